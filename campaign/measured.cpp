@@ -40,11 +40,6 @@ std::vector<std::size_t> places_of(const std::string& line) {
   return places;
 }
 
-/// A name itself, or what it is the first part of: "tip" of "tip.x".
-bool covers(const std::string& name, const std::string& column) {
-  return column == name || column.starts_with(name + '.');
-}
-
 class MeasuredReader {
  public:
   MeasuredReader(const MeasuredWish& wish, const std::vector<Column>& results, std::vector<std::string>& problems)
@@ -88,6 +83,14 @@ class MeasuredReader {
     problems_.push_back(fmt::format("{}:{}:{}: {}", wish_.file, line, column, message));
   }
 
+  /// Whether a name stands for a result: a result's own name for that one alone ("pivot" not for "pivot.rate"), the
+  /// first part of names for all that begin so ("tip" for "tip.x").
+  [[nodiscard]] bool covers(const std::string& name, const std::string& result) const {
+    const std::string plain = column_name(name);
+    if (std::find(known_.begin(), known_.end(), plain) != known_.end()) return result == plain;
+    return result.starts_with(plain + '.');
+  }
+
   double factor(const HeadCell& cell, const std::string& si_unit, std::size_t place) {
     if (cell.unit.empty() || (cell.unit == "1" && si_unit.empty())) return 1;
     const QuantityReading one = read_quantity("1 " + cell.unit, si_unit.empty() ? "1" : si_unit);
@@ -118,7 +121,7 @@ class MeasuredReader {
     const auto result = std::find(known_.begin(), known_.end(), column_name(cell.name));
     const bool wanted =
         wish_.outputs.empty() || std::any_of(wish_.outputs.begin(), wish_.outputs.end(),
-                                             [&](const std::string& o) { return covers(column_name(o), cell.name); });
+                                             [&](const std::string& o) { return covers(o, column_name(cell.name)); });
     if (result == known_.end() && wanted) {
       const std::string guess = nearest(cell.name, known_);
       if (!guess.empty() && !cell.name.empty())
@@ -176,6 +179,29 @@ class MeasuredReader {
       problem(number_, place, fmt::format("{:g} s lies after the scene's end, {:g} s", t, wish_.end));
   }
 
+  /// The unit of the first result that a name stands for: "ball", of a spherical hinge, are its coordinates, and its
+  /// rates have another one.
+  [[nodiscard]] std::string unit_of(const std::string& name) const {
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      if (covers(name, known_[i])) return results_[i].unit;
+    return {};
+  }
+
+  /// The text that gives a column's deviation: of those that stand for it the one with the longest name, as the name
+  /// itself is longer than its first part.
+  [[nodiscard]] const std::string* deviation_of(const MeasuredColumn& column) const {
+    const std::string* found = nullptr;
+    std::size_t longest = 0;
+    for (const std::string& text : wish_.deviations) {
+      const std::size_t equals = text.find('=');
+      if (equals == std::string::npos || equals < longest) continue;
+      const std::string name = text.substr(0, equals);
+      if (!covers(name, column.name) || column.unit != unit_of(name)) continue;
+      found = &text, longest = equals;
+    }
+    return found;
+  }
+
   void weigh(MeasuredColumn& column) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const double x : column.values)
@@ -184,16 +210,15 @@ class MeasuredReader {
       problem(1, 1, fmt::format("column {} has no values", in_quotes(column.name)));
       return;
     }
-    for (const std::string& text : wish_.deviations) {
-      const std::size_t equals = text.find('=');
-      if (equals == std::string::npos || !covers(column_name(text.substr(0, equals)), column.name)) continue;
+    if (const std::string* text = deviation_of(column)) {
       const std::string unit = column.unit.empty() ? "1" : column.unit;
-      const std::string given = text.substr(equals + 1);
+      const std::string given = text->substr(text->find('=') + 1);
       const auto bare = plain_number(given);
       const QuantityReading reading = bare ? QuantityReading{*bare, {}} : read_quantity(given, unit);
       if (!reading.value || !(*reading.value > 0))
-        problems_.push_back(
-            fmt::format("--deviations {}: {}", in_quotes(text), reading.value ? "need a number > 0" : reading.problem));
+        problems_.push_back(fmt::format("--deviations {}{}: {}", in_quotes(*text),
+                                        text->starts_with(column.name + '=') ? "" : ", column " + column.name,
+                                        reading.value ? "need a number > 0" : reading.problem));
       column.deviation = reading.value.value_or(1);
       column.deviation_given = true;
     }
@@ -217,7 +242,7 @@ class MeasuredReader {
   void check_wishes() {
     const auto check = [&](const std::string& option, const std::string& text, const std::string& name) {
       for (const MeasuredColumn& c : data_.columns)
-        if (covers(column_name(name), c.name)) return;
+        if (covers(name, c.name)) return;
       problems_.push_back(fmt::format("{} {}: no column of {} is compared under this name{}", option, in_quotes(text),
                                       wish_.file, suggestion(name, comparable_)));
     };

@@ -16,6 +16,7 @@ class AdaptiveStepper : public OneStep {
                   int error_order = 5, double caution = 1, double safety = 0.9)
       : OneStep(equations, start),
         error_(Eigen::ArrayXd::Zero(size())),
+        counted_(size() - (nothing_free(equations.layout()) ? 0 : 1)),
         control_(control),
         caution_(caution),
         safety_(safety),
@@ -102,10 +103,10 @@ class AdaptiveStepper : public OneStep {
   /// The step to take where control wants `wanted` after an accepted step h.
   [[nodiscard]] virtual double favoured(double wanted, double /*h*/) const { return wanted; }
 
-  /// Greatest of caution |error_| / (atol + rtol max(|y|, |next_|)) over positions and speeds. The greatest, not the
-  /// mean: a coordinate's error does not hide behind the number of the others.
+  /// Greatest of caution |error_| / (atol + rtol max(|y|, |next_|)) over positions and speeds, and the work where it
+  /// counts. The greatest, not the mean: a coordinate's error does not hide behind the number of the others.
   [[nodiscard]] double error_ratio() const {
-    const Eigen::Index n = size() - 1;
+    const Eigen::Index n = counted_;
     const auto ratio =
         error_.head(n).abs() / (control_.atol + control_.rtol * y().head(n).abs().max(next_.head(n).abs()));
     if (n == 0) return 0;
@@ -133,7 +134,7 @@ class AdaptiveStepper : public OneStep {
   /// estimate's order, is about a hundredth of the tolerance. Half of it: at the start from rest motion is even in
   /// time, and estimates may miss a first step's error by a factor of a hundred.
   double first_step(double remaining) {
-    const Eigen::Index n = size() - 1;
+    const Eigen::Index n = counted_;
     if (n == 0) return remaining;
     const auto norm = [&](const auto& v) {
       return (v.head(n).abs() / (control_.atol + control_.rtol * y().head(n).abs())).maxCoeff();
@@ -153,6 +154,10 @@ class AdaptiveStepper : public OneStep {
     return 0.25 * std::min(tau * std::pow(0.01 / (d2 * tau * tau), error_root_), longest);
   }
 
+  /// Whether motions prescribe every speed: then the work is all that there is to integrate.
+  static bool nothing_free(const Layout& layout) { return layout.speeds > 0 && layout.prescribed == layout.speeds; }
+
+  Eigen::Index counted_;  ///< elements of y whose errors count, from the first on
   StepControl control_;
   double caution_, safety_;
   double error_root_;    ///< 1 / order of the error estimate

@@ -115,6 +115,10 @@ class RadauStepper final : public AdaptiveStepper {
     filtered_ = filtered_ / h + slope.head(jacobian_.size()).matrix();
     stages_.real_system().solve(filtered_);
     error_.head(jacobian_.size()) = filtered_.array();
+    // Nothing depends on the work: of it the same with J = 0.
+    const Eigen::Index work = size() - 1;
+    const Collocation& method = Collocation::radau_iia();
+    error_[work] = h / method.gamma * (slope[work] + e.dot(method.A * stages_.slopes().row(work).transpose()));
   }
 
   void accepted(double h) override {

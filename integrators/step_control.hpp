@@ -12,7 +12,7 @@
 namespace withy {
 
 /// A step is accepted when the estimated error of every position and speed is at most atol + rtol |y|. The work
-/// element of State has no part in it.
+/// element of State has no part in it, but where motions prescribe every speed: there nothing else is left to find.
 struct StepControl {
   double rtol = 1e-6;
   double atol = 1e-9;       ///< in the unit of each element

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/analysis/steady_state.hpp"
 #include "withy/core/model/switched_load.hpp"
 #include "withy/core/plugin/changing_law.hpp"
 #include "withy/study/linear_inputs.hpp"
@@ -21,19 +22,6 @@ bool at_rest(const Configuration& c) {
       if (c.state().y[c.layout().positions + slot.speed + i] != 0) return false;
     }
   }
-  return true;
-}
-
-/// Whether the continuous states of loads stay what they are.
-bool states_rest(const Configuration& c) {
-  const Layout& layout = c.layout();
-  if (layout.continuous == 0) return true;
-  const EquationsOfMotion& equations = *c.prepared().equations;
-  Work work = equations.make_work();
-  std::vector<double> y_dot(layout.size());
-  if (!equations.derivatives(c.state().time, c.state().y, y_dot, work).ok()) return false;
-  for (std::size_t i = layout.positions + layout.speeds; i < layout.moving(); ++i)
-    if (std::abs(y_dot[i]) > 1e-9 * (1 + std::abs(c.state().y[i]))) return false;
   return true;
 }
 
@@ -57,13 +45,6 @@ std::vector<std::string> changing_loads(const Configuration& c) {
     if (law != nullptr && law->changes_gain()) names.push_back(loads[i].name);
   }
   return names;
-}
-
-/// What rounding leaves of accelerations in equilibrium: of terms M⁻¹ K q, to four digits more than they have.
-double acceleration_tolerance(const Configuration& c, const Eigen::MatrixXd& A) {
-  double greatest = 0;
-  for (std::size_t i = 0; i < c.layout().positions; ++i) greatest = std::max(greatest, std::abs(c.state().y[i]));
-  return 1e-9 + (A.size() > 0 ? 1e-12 * A.cwiseAbs().maxCoeff() * greatest : 0.0);
 }
 
 /// C, D of the outputs in continuous time, and by what is held (columns after those of the states).
@@ -113,14 +94,10 @@ LinearModel about(const Configuration& c, const SmallMotions& motions, const Sam
   linear.states = motions.names();
   linear.states.insert(linear.states.end(), sampled.names().begin(), sampled.names().end());
   linear.derivatives = motions.derivatives();
-  double greatest = 0;
-  for (const Eigen::Index s : motions.free()) {
+  for (const Eigen::Index s : motions.free())
     linear.accelerations.emplace_back(c.layout().speed_names[static_cast<std::size_t>(s)], motions.accelerations()[s]);
-    greatest = std::max(greatest, std::abs(motions.accelerations()[s]));
-  }
   linear.changing = changing_loads(c);
-  linear.equilibrium =
-      at_rest(c) && states_rest(c) && sampled.steady() && greatest <= acceleration_tolerance(c, motions.A());
+  linear.equilibrium = at_rest(c) && sampled.steady() && is_steady_state(c.dynamics(), c.state(), c.held());
   return linear;
 }
 

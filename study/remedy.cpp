@@ -86,7 +86,8 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
     case RunStatus::too_stiff:
       return stiff_remedy(prepared, summary);
     case RunStatus::inaccurate:
-      return " What to do: take shorter steps (a smaller 'step', or 'rtol' of an integrator that controls its error), "
+      return " What to do: take shorter steps (a smaller 'step', or 'rtol' or 'max_step' of an integrator that "
+             "controls its error), "
              "or one that no vibration limits, as radau.";
     default:
       break;

@@ -5,6 +5,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <string>
 #include <vector>
 
 #include "withy/host/library.hpp"
@@ -31,6 +32,14 @@ inline Array array_of(std::vector<double> numbers, std::vector<py::ssize_t> shap
   auto* kept = new std::vector<double>(std::move(numbers));
   const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<double>*>(p); });
   return Array(std::move(shape), kept->data(), owner);
+}
+
+/// Numbers that code in Python gives, in any shape. \param what gives them, for messages
+/// \throws py::error_already_set as numpy refuses them; py::value_error where it gives nothing
+inline Array numbers_given(const py::object& given, const char* what) {
+  // To numpy nothing is a number that is none.
+  if (given.is_none()) throw py::value_error(std::string(what) + " gives None; need numbers (is a 'return' missing?)");
+  return Array(given);
 }
 
 /// Libraries, scenes, their runs and studies.

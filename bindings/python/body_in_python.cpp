@@ -19,8 +19,7 @@ std::vector<double> numbers_of(const py::dict& of, const char* key, std::vector<
   for (const py::ssize_t n : shape) count *= static_cast<std::size_t>(n);
   std::vector<double> numbers(count);
   if (!of.contains(key)) return numbers;
-  const Array given = Array::ensure(of[key]);
-  if (!given) throw py::error_already_set();
+  const Array given = numbers_given(of[key], key);
   if (!std::equal(shape.begin(), shape.end(), given.shape(), given.shape() + given.ndim()))
     throw py::value_error(std::string(key) + ": need the shape " + std::string(py::str(py::cast(shape))));
   std::copy_n(given.data(), count, numbers.begin());

@@ -49,14 +49,21 @@ class Signals {
   std::optional<py::error_already_set> raised_;
 };
 
-/// Calls `act` without the interpreter, which Ctrl-C ends.
+/// Raises what a signal's handler raises that nobody has called yet, as of an interrupt that came while a law in Python
+/// was at work. With the interpreter held.
+inline void raise_signals() {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+/// Calls `act` without the interpreter. Ctrl-C ends it, and so does what `progress` raises.
 template <class Act>
 auto followed(const py::object& progress, Act&& act) {
   Signals signals;
   signals.begin();
-  host::Follow follow;
-  follow.interrupted = [&signals] { return signals.pending(); };
   std::optional<py::error_already_set> failed;
+  std::atomic<bool> over = false;  // read by all threads of a study
+  host::Follow follow;
+  follow.interrupted = [&] { return over || signals.pending(); };
   if (!progress.is_none())
     follow.progress = [&](double done, double all) {
       const py::gil_scoped_acquire held;
@@ -65,15 +72,27 @@ auto followed(const py::object& progress, Act&& act) {
         progress(done, all);
       } catch (py::error_already_set& e) {
         failed.emplace(std::move(e));
+        over = true;
       }
     };
-  auto result = [&] {
-    const py::gil_scoped_release released;
-    return act(std::as_const(follow));
-  }();
-  signals.raise();
-  if (failed) throw std::move(*failed);
-  return result;
+  const auto raise = [&] {
+    signals.raise();
+    if (failed) throw std::move(*failed);
+    raise_signals();
+  };
+  try {
+    auto result = [&] {
+      const py::gil_scoped_release released;
+      return act(std::as_const(follow));
+    }();
+    raise();
+    return result;
+  } catch (const py::error_already_set&) {
+    throw;
+  } catch (...) {
+    raise();  // why it ended
+    throw;
+  }
 }
 
 }  // namespace withy::python

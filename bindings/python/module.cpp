@@ -7,12 +7,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <mutex>
 #include <system_error>
 #include <utility>
 
 #include "withy/bindings/python/bindings.hpp"
 #include "withy/bindings/python/followed.hpp"
+#include "withy/bindings/python/one_at_a_time.hpp"
 #include "withy/bindings/python/python_failure.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/host/equations.hpp"
@@ -34,6 +34,7 @@ using withy::host::Snapshot;
 using withy::python::Array;
 using withy::python::array_of;
 using withy::python::names_of;
+using withy::python::OneAtATime;
 using withy::python::Signals;
 using withy::python::units_of;
 
@@ -63,7 +64,7 @@ struct SharedEquations {
     std::string why;
     {
       const py::gil_scoped_release released;
-      const std::lock_guard lock(busy);
+      const OneAtATime::Turn turn(busy);
       const withy::host::EvaluatedRows done = equations.derivatives_many(t, {y.data(), size}, out);
       if (!done.evaluation.ok()) why = "row " + std::to_string(done.rows) + ": " + equations.reason(t, done.evaluation);
     }
@@ -76,7 +77,7 @@ struct SharedEquations {
     Array J({n, n});
     const std::span<double> out(J.mutable_data(), at.size() * at.size());
     const py::gil_scoped_release released;
-    const std::lock_guard lock(busy);
+    const OneAtATime::Turn turn(busy);
     equations.jacobian(t, at, out);
     return J;
   }
@@ -87,7 +88,7 @@ struct SharedEquations {
     std::copy(at.begin(), at.end(), out.begin());
     // Who holds the lock may need the interpreter, for a load in Python.
     const py::gil_scoped_release released;
-    const std::lock_guard lock(busy);
+    const OneAtATime::Turn turn(busy);
     equations.normalize(out);
     return scaled;
   }
@@ -95,7 +96,7 @@ struct SharedEquations {
     std::string why;
     {
       const py::gil_scoped_release released;
-      const std::lock_guard lock(busy);
+      const OneAtATime::Turn turn(busy);
       const withy::Evaluation evaluation = equations.derivatives(t, y, y_dot);
       if (evaluation.ok()) return;
       why = equations.reason(t, evaluation);
@@ -104,7 +105,7 @@ struct SharedEquations {
   }
 
   Equations equations;
-  std::mutex busy;
+  OneAtATime busy;
 };
 
 /// A simulation that Python's threads share, one step at a time.
@@ -115,18 +116,27 @@ struct SharedSimulation {
   auto call(Act&& act) {
     try {
       const py::gil_scoped_release released;
-      const std::lock_guard lock(busy);
+      const OneAtATime::Turn turn(busy);
       signals.begin();
       return act(simulation);
     } catch (const SimulationStopped&) {
       signals.raise();
+      withy::python::raise_signals();
       throw;
     }
+  }
+  /// What only reads, and what a law may therefore ask of the simulation that calls it.
+  template <class Act>
+  auto look(Act&& act) {
+    if (busy.mine()) return act(std::as_const(simulation));
+    const py::gil_scoped_release released;
+    const OneAtATime::Turn turn(busy);
+    return act(std::as_const(simulation));
   }
 
   Signals signals;
   Simulation simulation;
-  std::mutex busy;
+  OneAtATime busy;
 };
 
 /// Raises an exception of the package.
@@ -211,7 +221,7 @@ void bind_equations(py::module_& m) {
       .def("_input", [](const E& e, std::size_t i) { return e.equations.input(i); })
       .def("_set_input", [](E& e, std::size_t i, double value) {
         const py::gil_scoped_release released;
-        const std::lock_guard lock(e.busy);
+        const OneAtATime::Turn turn(e.busy);
         e.equations.set_input(i, value);
       });
 }
@@ -226,7 +236,7 @@ void bind_simulation(py::module_& m) {
   py::class_<S>(m, "Simulation")
       .def(py::init<const Scene&>())
       .def_property_readonly(
-          "time", [](const S& s) { return s.simulation.time(); }, "Present time [s].")
+          "time", [](S& s) { return s.look([](const Simulation& own) { return own.time(); }); }, "Present time [s].")
       .def(
           "step", [](S& s, double t) { s.call([t](Simulation& own) { own.step(t); }); }, py::arg("t"),
           "step(t) -> None\n\nIntegrates to the time t [s] and lands on it exactly, passing events on the way.\n\n"
@@ -251,13 +261,14 @@ void bind_simulation(py::module_& m) {
           "state", [](S& s) { return s.call([](Simulation& own) { return own.state(); }); },
           "The present state as JSON text, in the form of `initial` in a scene.")
       .def_property_readonly(
-          "evaluations", [](const S& s) { return s.simulation.evaluations(); },
+          "evaluations", [](S& s) { return s.look([](const Simulation& own) { return own.evaluations(); }); },
           "Evaluations of the equations of motion so far.")
       .def_property_readonly(
           "events",
-          [](const S& s) {
+          [](S& s) {
+            const std::vector<Event> last = s.look([](const Simulation& own) { return own.events(); });
             py::list events;
-            for (const Event& e : s.simulation.events()) events.append(py::make_tuple(e.name, e.time, e.direction));
+            for (const Event& e : last) events.append(py::make_tuple(e.name, e.time, e.direction));
             return events;
           },
           "Events of the last step: tuples of name, time [s] and direction (+1 from below, -1 from "

@@ -47,8 +47,7 @@ Array copied(std::span<const double> numbers) {
 
 /// Numbers that Python gives: a scalar for one, else a sequence. \throws py::value_error where they are not as many
 void take(const py::object& given, std::span<double> to, const char* what) {
-  const Array numbers = Array::ensure(given);
-  if (!numbers) throw py::error_already_set();
+  const Array numbers = numbers_given(given, what);
   if (static_cast<std::size_t>(numbers.size()) != to.size())
     throw py::value_error(std::string(what) + " gives " + std::to_string(numbers.size()) + " numbers; need " +
                           std::to_string(to.size()));

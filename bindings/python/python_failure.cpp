@@ -43,7 +43,6 @@ std::string Failure::keep(const std::string& what) {
 }
 
 void Failure::note(const py::error_already_set& e, double t) {
-  if (e.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();  // raised again where the call has come back
   const std::string at = " at t = " + brief(t) + " s";
   py::object exception = e.value();
   std::string what = "raised an exception" + at;
@@ -57,6 +56,8 @@ void Failure::note(const py::error_already_set& e, double t) {
   }
   std::string text = keep(what);
   raised()[std::this_thread::get_id()] = {std::move(text), std::move(exception)};
+  // Raised again where the call has come back. Last: whatever asks Python would raise it here.
+  if (e.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
 }
 
 void Failure::note(const std::string& why, double t) {

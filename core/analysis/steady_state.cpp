@@ -16,6 +16,8 @@ namespace {
 constexpr int most_iterations = 100;
 /// A step this small against the coordinates and what they have moved is rounding.
 constexpr double converged_step = 1e-11;
+/// The same of a state that somebody gives.
+constexpr double typed_share = 1e-9;
 /// Who starts as near as this [rad] to a balance means that one, though it may not last, as of an upright pendulum.
 constexpr double near = 0.5;
 /// Below this share of the largest singular value the stiffness counts as singular.
@@ -144,6 +146,15 @@ class Newton {
     result.state = state_;
     if (singular_) result.neutral = neutral({result.efforts, result.rates});
     return result;
+  }
+
+  bool solved() {
+    const Imbalance left{dynamics_.residual(state_.time, state_.y, rest_),
+                         dynamics_.rates(state_.time, state_.y, rest_)};
+    if (free_.empty() && left.rates.size() == 0) return left.forces.allFinite();
+    if (!factorize(dynamics_.stiffness(state_.time, state_.y, rest_))) return false;
+    const Change step = solve_for(left);
+    return step.finite() && settled(step, typed_share, 0, Eigen::VectorXd::Zero(step.states.size())) && balanced(left);
   }
 
  private:
@@ -284,6 +295,10 @@ SteadyState find_steady_state(const TangentDynamics& dynamics, const State& star
   if (!settled.converged) return found;
   settled.relaxations = relaxation->steps;
   return settled;
+}
+
+bool is_steady_state(const TangentDynamics& dynamics, const State& state, const Held& held) {
+  return Newton(dynamics, state, held).solved();
 }
 
 namespace {

@@ -44,6 +44,10 @@ struct SteadyState {
 /// come to rest. Where that leads nowhere, what Newton's method found stands.
 SteadyState find_steady_state(const TangentDynamics& dynamics, const State& start, const Held& held);
 
+/// Whether a state in which no mode moves is such a state: what Newton's method would still change is less than a
+/// billionth of the coordinates, since data are seldom typed more exactly.
+bool is_steady_state(const TangentDynamics& dynamics, const State& state, const Held& held);
+
 /// Whether what the free speeds feel begins to change as the hinges turn with the state's rates: it does where gravity
 /// or a load turns in the rotating frame, but where these are at their greatest; check_turn looks at a whole turn.
 bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, const State& state, const Held& held);

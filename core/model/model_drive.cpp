@@ -44,6 +44,7 @@ void Model::add_motion(std::string name, const std::string& hinge_name, std::sha
     throw std::invalid_argument("hinge '" + hinge_name + "' is driven by motion '" + other->name + "' already");
   }
   driven_[static_cast<std::size_t>(index)] = true;
+  layout_.prescribed += slot.speeds;
   motions_.push_back({std::move(name), index, std::move(motion)});
 }
 

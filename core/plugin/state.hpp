@@ -33,6 +33,7 @@ struct Layout {
   std::vector<std::string> speed_names;  ///< as `shoulder.0`, `link1.bending_y[1]`
   std::size_t positions = 0;
   std::size_t speeds = 0;
+  std::size_t prescribed = 0;                 ///< count of the speeds that motions prescribe
   std::size_t continuous = 0;                 ///< count of continuous states of loads
   std::size_t discrete = 0;                   ///< count of discrete states of loads
   std::vector<LoadSlot> continuous_slots;     ///< of the loads with a continuous part, in their order

@@ -13,6 +13,7 @@
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/monitor.hpp"
+#include "withy/core/simulation/motion_gap.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/step_watch.hpp"
 #include "withy/core/simulation/stepping.hpp"
@@ -40,6 +41,7 @@ class Run final : public SteppingObserver {
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary, attention),
         loops_(equations, loop_.state()),
+        motion_gap_(model),
         halves_(initial.time),
         creep_(equations, initial, options.own_energy) {
     if (attention == Attention::whole) validity_.emplace(model, equations, options.beyond, summary.validity);
@@ -78,6 +80,7 @@ class Run final : public SteppingObserver {
   [[nodiscard]] const EquationsOfMotion& equations() const { return equations_; }
   [[nodiscard]] Monitor& monitor() { return monitor_; }
   [[nodiscard]] const Monitor& monitor() const { return monitor_; }
+  [[nodiscard]] const MotionGap& motion_gap() const { return motion_gap_; }
   /// Names of the events that have ended the run.
   [[nodiscard]] const std::vector<std::string>& stopped_by() const { return stopped_by_; }
 
@@ -109,6 +112,7 @@ class Run final : public SteppingObserver {
     const State& state = stepper.state();
     monitor_.audit_steps(state, stepper.statistics());
     monitor_.observe(stepper);
+    motion_gap_.look(state);
     if (watch_ != nullptr) watch_->observe(stepper);
     monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
     const bool seen = audited(stepper.statistics().accepted);
@@ -176,6 +180,7 @@ class Run final : public SteppingObserver {
 
   void output_at(const State& state) {
     monitor_.show(state);
+    motion_gap_.look(state);
     emitted_ = state.time;
     if (output_) output_(state);
   }
@@ -197,6 +202,7 @@ class Run final : public SteppingObserver {
     if (validity_) validity_->remember(memory);
     loop_.remember(memory);
     loops_.remember(memory);
+    motion_gap_.remember(memory);
     if (watch_ != nullptr) watch_->remember(memory);
     memory(emitted_);
     halves_.remember(memory);
@@ -231,6 +237,7 @@ class Run final : public SteppingObserver {
   Monitor monitor_;
   std::optional<ValidityWatch> validity_;  ///< nothing where nobody asks
   LoopWatch loops_;
+  MotionGap motion_gap_;
   LaterHalf halves_;
   CreepWatch creep_;
   double emitted_ = 0;  ///< time of the last output
@@ -318,9 +325,10 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     const std::string imbalanced = run.monitor().greatest_speed() > options.least_speed
                                        ? imbalance(summary, options, integrator, mean_step)
                                        : std::string();
-    if (!imbalanced.empty()) {
+    for (const std::string& fault : {imbalanced, run.motion_gap().text()}) {
+      if (fault.empty()) continue;
       stop.status = RunStatus::inaccurate;
-      summary.message = imbalanced + (summary.message.empty() ? "" : " ") + summary.message;
+      summary.message = fault + (summary.message.empty() ? "" : " ") + summary.message;
     }
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end

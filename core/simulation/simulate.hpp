@@ -24,7 +24,7 @@ class ChangingEquations;
 /// How a run ended.
 enum class RunStatus {
   completed,
-  inaccurate,  ///< it came to the end, but energy and work do not balance
+  inaccurate,  ///< it came to the end, but energy and work do not balance, or a hinge has left its motion
   diverged,
   singular,
   step_underflow,

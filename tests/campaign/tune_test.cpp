@@ -80,6 +80,35 @@ struct TuneFolder : test::Scratch {
 const std::vector<std::string> three = {"loads.spring.stiffness", "loads.spring.damping",
                                         "initial.hinges.slide.position.0"};
 
+// The least squares that two deviations ask for, whichever is said first: with an angle's deviation for its rate too
+// the fit would be another one.
+TEST(Tune, ADeviationIsThatOfTheResultOfItsName) {
+  const TuneFolder folder;
+  const Truth truth;
+  std::string text = "t[s],slide,slide.rate\n";
+  for (std::uint64_t i = 0; i < 160; ++i) {
+    const double t = 0.0249 * static_cast<double>(i), h = 1e-5;
+    const double rate = (truth.at(t + h) - truth.at(t - h)) / (2 * h);
+    text += fmt::format("{},{},{}\n", t, truth.at(t) + 1e-3 * noise(1, i), rate + 0.03 * noise(2, i));
+  }
+  folder.write("data.csv", text);
+  const auto tuned = [&](std::vector<std::string> deviations, std::vector<std::string> outputs = {}) {
+    TuneQuestion question;
+    question.parameters = three;
+    question.deviations = std::move(deviations);
+    question.outputs = std::move(outputs);
+    return folder.tuned(question);
+  };
+  const TuneResult result = tuned({"slide=1 mm", "slide.rate=0.03 m/s"});
+  ASSERT_TRUE(result.converged()) << result.trouble;
+  EXPECT_EQ(result.data.columns[0].deviation, 1e-3);
+  EXPECT_EQ(result.data.columns[1].deviation, 0.03);
+  const TuneResult turned = tuned({"slide.rate=0.03 m/s", "slide=1 mm"});
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(turned.parameters[i].value, result.parameters[i].value);
+  EXPECT_FALSE(tuned({"slide=1 mm"}).data.columns[1].deviation_given);
+  EXPECT_EQ(tuned({}, {"slide"}).data.columns.size(), 1U);
+}
+
 TEST(Tune, FindsWhatMadeTheDataAndItsCovarianceIsThatOfManyFits) {
   const TuneFolder folder;
   const Truth truth;

@@ -113,6 +113,44 @@ def test_an_exception_without_a_text_ends_a_run_too():
     assert type(result.cause) is Mute
 
 
+def test_an_interrupt_within_a_law_is_raised_where_the_call_comes_back():
+    def law(t, w):
+        if t > 0.3:
+            raise KeyboardInterrupt
+        return 0.0
+
+    scene = turntable(law=withy.python_load(law, hinge="axle"))
+    with pytest.raises(KeyboardInterrupt):
+        scene.run()
+    simulation = withy.Simulation(scene)
+    with pytest.raises(KeyboardInterrupt):
+        simulation.step(1)
+
+
+def test_a_law_that_asks_its_own_simulation_is_refused_what_it_would_wait_for():
+    own = {}
+    times = []
+
+    def law(t, w):
+        if "simulation" in own:
+            times.append(own["simulation"].time)  # what only reads is given
+            own["simulation"].outputs["axle"]
+        return 0.0
+
+    own["simulation"] = withy.Simulation(turntable(law=withy.python_load(law, hinge="axle")))
+    with pytest.raises(withy.SimulationStopped, match="RuntimeError.*it is at work and calls this code"):
+        own["simulation"].step(0.1)
+    assert times[0] == 0
+
+
+@pytest.mark.parametrize("given, words", [(None, "gives None; need numbers"), ("much", "could not convert"),
+                                          ([1, 2], "effort.. gives 2 numbers; need 1")])
+def test_what_a_law_gives_that_is_no_number_is_the_reason_of_the_end(given, words):
+    result = turntable(law=withy.python_load(lambda t, w: given, hinge="axle")).run()
+    assert result.status == "load-failed"
+    assert re.search(words, result.message), result.message
+
+
 def test_a_forked_process_has_the_scenes_and_the_objects_of_before():
     scene = turntable(law=withy.python_load(Servo(), of="axle", hinge="axle"))
     expected = scene.run()["axle"]

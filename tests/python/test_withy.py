@@ -259,6 +259,34 @@ def test_ctrl_c_ends_a_run(slew):
     simulation.step(simulation.time + 0.01)  # it goes on
 
 
+def test_events_are_read_while_another_thread_steps():
+    scene = withy.loads("""
+format: withy/1
+bodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 1000}}
+events: {passes_the_middle: {hinge: slide, value: 0}}
+initial: {hinges: {slide: {position: [0.1]}}}
+""")
+    simulation = withy.Simulation(scene)
+    over = threading.Event()
+    seen = set()
+
+    def watch():
+        while not over.is_set():
+            seen.update(event[0] for event in simulation.events)
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    try:
+        for k in range(1, 400):
+            simulation.step(0.1 * k)
+    finally:
+        over.set()
+        watcher.join()
+    assert seen <= {"passes_the_middle"} and simulation.events
+
+
 def test_progress_is_told_and_its_errors_are_raised(slew):
     told = []
     slew.run(progress=lambda done, end: told.append(done / end))
@@ -268,7 +296,7 @@ def test_progress_is_told_and_its_errors_are_raised(slew):
         raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        slew.run(progress=fail)
+        slew.run(time={"end": 1e5}, progress=fail)  # at once: the whole run would take minutes
 
 
 def test_studies_give_what_the_program_prints(slew):

@@ -1,0 +1,55 @@
+#include "withy/core/simulation/motion_gap.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+
+namespace withy {
+
+MotionGap::MotionGap(const Model& model) : model_(model) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  for (const MotionNode& m : model.motions())
+    if (!m.motion->locks())
+      driven_.push_back({&m, model.layout().hinges[static_cast<std::size_t>(m.hinge)].position, none, -none, 0, 0});
+}
+
+void MotionGap::look(const State& state) noexcept {
+  for (Driven& d : driven_) {
+    const double law = d.motion->motion->at(state.time).position;
+    if (!std::isfinite(law)) continue;  // whatever follows it ends the run
+    d.least = std::min(d.least, law), d.most = std::max(d.most, law);
+    if (const double gap = std::abs(state.y[d.position] - law); gap > d.gap) d.gap = gap, d.time = state.time;
+  }
+}
+
+void MotionGap::remember(Memory& memory) {
+  for (Driven& d : driven_)
+    for (double* number : {&d.least, &d.most, &d.gap, &d.time}) memory(*number);
+}
+
+std::string MotionGap::text() const {
+  constexpr double kept = 0.01;
+  const Driven* worst = nullptr;
+  double greatest = kept;
+  for (const Driven& d : driven_) {
+    const double range = d.most - d.least;
+    // What stands still has no range, and rounding is no distance.
+    const double share = d.gap > 1e-9 * (std::abs(d.least) + std::abs(d.most)) ? d.gap / range : 0;
+    if (share > greatest) greatest = share, worst = &d;
+  }
+  if (worst == nullptr) return {};
+  const HingeNode& hinge = model_.hinges()[static_cast<std::size_t>(worst->motion->hinge)];
+  return fmt::format(
+      "Hinge '{}' is off its motion '{}' by {} {} at t = {} s, of {} that the motion goes: steps have passed over what "
+      "its law does in between. Limit them (integrator.max_step, or a smaller step); where the law has a kink, as of "
+      "min, max or abs, give it as a table or in parts.",
+      hinge.name, worst->motion->name, brief(worst->gap), hinge_rates(*hinge.hinge).front().angular ? "rad" : "m",
+      brief(worst->time), brief(worst->most - worst->least));
+}
+
+}  // namespace withy
