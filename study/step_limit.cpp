@@ -73,7 +73,7 @@ void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit
   s.fastest = std::abs(pole->value);
   s.product = s.mean * s.fastest;
   s.maker = describe(*pole, prepared.model().layout());
-  s.made_by_load = pole->cause.find(" of load ") != std::string::npos;
+  s.made_by_load = pole->of_load;
 }
 
 }  // namespace

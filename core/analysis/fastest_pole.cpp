@@ -9,6 +9,8 @@
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/tangents/load_wrenches.hpp"
+#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy {
 namespace {
@@ -24,10 +26,57 @@ const std::string state_of_load = "the state of load '";
 struct Part {
   std::string name;
   Eigen::MatrixXd by_position, by_speed;
+  bool of_load = false;
 };
 
-/// Stiffness and damping of bodies, and what loads that differentiate themselves give; the rest last.
-std::vector<Part> parts_of(const Model& model, const State& state, const Tangents& tangents) {
+/// Efforts of a load on speeds, those that go by its states too.
+Eigen::VectorXd efforts_of(const Model& model, std::size_t load, double t, std::span<const double> y) {
+  const Layout& layout = model.layout();
+  Eigen::VectorXd efforts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.speeds));
+  const std::span<double> own(efforts.data(), layout.speeds);
+  std::vector<double> scratch(model.load_scratch());
+  model.loads()[load].load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), own, scratch);
+  model.add_state_efforts(t, y, own, scratch, static_cast<int>(load));
+  return efforts;
+}
+
+/// Their derivatives by differences.
+void add_differences(const TangentDynamics& dynamics, std::size_t load, const State& state, Part& part) {
+  const Model& model = dynamics.model();
+  const Eigen::Index n = part.by_speed.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto slope = [&](auto&& move) {
+      return refined_difference(
+          [&](double h) {
+            std::vector<double> moved = state.y;
+            move(moved, h);
+            return efforts_of(model, load, state.time, moved);
+          },
+          analysis::difference_step);
+    };
+    part.by_position.col(j) +=
+        slope([&](std::vector<double>& y, double h) { dynamics.displace(y, h * Eigen::VectorXd::Unit(n, j)); });
+    part.by_speed.col(j) += slope(
+        [&](std::vector<double>& y, double h) { y[model.layout().positions + static_cast<std::size_t>(j)] += h; });
+  }
+}
+
+/// Adds what a load's continuous part does by displacements and speeds, where it says so.
+bool add_of_states(const LoadNode& node, const Model& model, const State& state, Part& part) {
+  const Layout& layout = model.layout();
+  const auto slot = std::find_if(layout.continuous_slots.begin(), layout.continuous_slots.end(),
+                                 [&](const LoadSlot& s) { return &model.loads()[s.load] == &node; });
+  if (slot == layout.continuous_slots.end()) return false;
+  const auto n = static_cast<Eigen::Index>(layout.speeds), z = static_cast<Eigen::Index>(slot->count);
+  Eigen::MatrixXd by_state(n, z), rate_by_position(z, n), rate_by_speed(z, n), rate_by_state(z, z);
+  ContinuousDerivatives to{part.by_position, part.by_speed, by_state, rate_by_position, rate_by_speed, rate_by_state};
+  std::vector<double> scratch(model.load_scratch());
+  return node.continuous->add_derivatives(node.view(state.time, state.y, layout, scratch), to);
+}
+
+/// Stiffness and damping of bodies, and what loads do on speeds; the rest last.
+std::vector<Part> parts_of(const TangentDynamics& dynamics, const State& state, const Tangents& tangents) {
+  const Model& model = dynamics.model();
   const Layout& layout = model.layout();
   const auto n = static_cast<Eigen::Index>(layout.speeds);
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n);
@@ -49,17 +98,31 @@ std::vector<Part> parts_of(const Model& model, const State& state, const Tangent
     take(std::move(part));
   }
   const std::span<const double> y(state.y);
-  for (const LoadNode& node : model.loads()) {
-    Part part{"load '" + node.name + "'", none, none};
-    if (!node.load->add_derivatives(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
-                                    part.by_position, part.by_speed))
+  bool at_frames = false;
+  for (std::size_t l = 0; l < model.loads().size(); ++l) {
+    const LoadNode& node = model.loads()[l];
+    at_frames = at_frames || !node.load->frames().empty();
+    Part part{"load '" + node.name + "'", none, none, true};
+    const auto& differenced = tangents.differenced;
+    const bool by_itself =
+        node.load->add_derivatives(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
+                                   part.by_position, part.by_speed);
+    const bool by_states = add_of_states(node, model, state, part);
+    if (node.load->frames().empty() &&
+        std::find(differenced.begin(), differenced.end(), node.name) != differenced.end()) {
+      part.by_position.setZero();
+      part.by_speed.setZero();
+      add_differences(dynamics, l, state, part);
+    } else if (!by_itself && !by_states) {
       continue;
+    }
     // Efforts stand on the other side of the equation.
     part.by_position = -part.by_position;
     part.by_speed = -part.by_speed;
     take(std::move(part));
   }
-  if (!tangents.differenced.empty()) rest.name += " and loads";
+  // Wrenches at frames are not told from what the frames' bodies do.
+  if (at_frames) rest.name += ", and loads at frames", rest.of_load = true;
   parts.push_back(std::move(rest));
   return parts;
 }
@@ -79,6 +142,7 @@ Eigen::VectorXcd null_vector(const Eigen::MatrixXcd& Q) {
 
 struct Cause {
   std::string name;
+  bool of_load = false;
   Eigen::Index at = 0;  ///< the free displacement on which it acts most
 };
 
@@ -87,17 +151,18 @@ Cause cause_of(const std::vector<Part>& parts, const std::vector<Eigen::Index>& 
                const Eigen::VectorXcd& left, const Eigen::VectorXcd& right, Complex inertial) {
   double greatest = 0;
   Cause cause;
-  const auto weigh = [&](const Eigen::MatrixXd& part, Complex factor, const std::string& name) {
+  const auto weigh = [&](const Eigen::MatrixXd& part, Complex factor, const std::string& name, bool of_load) {
     const Eigen::VectorXcd works = left.conjugate().cwiseProduct(factor * (part(free, free).cast<Complex>() * right));
     const double share = (-works.sum() / inertial).real();
     if (share <= greatest) return;
     greatest = share;
     cause.name = name;
+    cause.of_load = of_load;
     works.cwiseAbs().maxCoeff(&cause.at);
   };
   for (const Part& part : parts) {
-    weigh(part.by_position, 1.0, "stiffness of " + part.name);
-    weigh(part.by_speed, pole, "damping of " + part.name);
+    weigh(part.by_position, 1.0, "stiffness of " + part.name, part.of_load);
+    weigh(part.by_speed, pole, "damping of " + part.name, part.of_load);
   }
   return cause;
 }
@@ -164,6 +229,7 @@ FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const H
     const bool of_state = std::abs(value - result.value) > more * std::abs(value);
     result.value = value;
     if (of_state && value != 0.0) {
+      result.of_load = true;
       result.cause = state_of_load + state_of(dynamics.model().layout(), whole, value) + "'";
       return result;
     }
@@ -181,9 +247,10 @@ FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const H
   const Eigen::VectorXcd right = scale.cast<Complex>().cwiseProduct(null_vector(Q)),
                          left = scale.cast<Complex>().cwiseProduct(null_vector(Q.adjoint()));
   const Complex inertia = left.dot(of_free(t.mass) * right);
-  const Cause cause = cause_of(parts_of(dynamics.model(), state, t), free, result.value, left, right,
-                               result.value * result.value * inertia);
+  const Cause cause =
+      cause_of(parts_of(dynamics, state, t), free, result.value, left, right, result.value * result.value * inertia);
   result.cause = cause.name;
+  result.of_load = cause.of_load;
   result.speed = static_cast<std::size_t>(free[static_cast<std::size_t>(cause.at)]);
   result.alone = masses[cause.at];
   result.inertia = std::abs(inertia) / (std::abs(left[cause.at]) * std::abs(right[cause.at]));

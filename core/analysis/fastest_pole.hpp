@@ -21,6 +21,7 @@ struct FastestPole {
   /// 'link1'". Of a pole that a continuous state of a load makes it is "the state of load 'servo.integral'", and
   /// nothing else but the value is set.
   std::string cause;
+  bool of_load = false;  ///< a load is the cause, or may be: of those at frames and inertia no part is told
   [[nodiscard]] bool of_load_state() const;
 };
 

@@ -60,6 +60,26 @@ TEST(FastestPole, of_a_servo_without_inertia_behind_it_says_so) {
   EXPECT_NE(describe(pole, c.layout()).find("little inertia"), std::string::npos);
 }
 
+/// The same law as a spring's, in loads that act through states of their own: it bears the load's name too.
+TEST(FastestPole, of_a_controller_is_that_of_the_spring_that_does_the_same) {
+  const std::string spring = "{type: hinge-spring, hinge: shoulder, stiffness: 4000, damping: 300}";
+  const auto pole_with = [&](const std::string& load) {
+    std::string text = servo_arm;
+    text.replace(text.find(spring), spring.size(), load);
+    AnalysedScene c(text, "quadratic");
+    return fastest_pole(*c.dynamics, c.state, driven_speeds(*c.scene.model, c.state));
+  };
+  const FastestPole sprung = pole_with(spring);
+  EXPECT_TRUE(sprung.of_load);
+  for (const std::string law :
+       {"proportional: 4000, derivative: 300", "proportional: 4000, integral: 1, derivative: 300"}) {
+    const FastestPole pole = pole_with("{type: pid, hinge: shoulder, reference: 0, " + law + "}");
+    EXPECT_NEAR(pole.value.real() / sprung.value.real(), 1, 1e-3) << law;
+    EXPECT_EQ(pole.cause, "damping of load 'servo'") << law;
+    EXPECT_TRUE(pole.of_load) << law;
+  }
+}
+
 /// One coordinate: −c/J and ±√(k/J) in closed form.
 TEST(FastestPole, of_a_disk_is_in_closed_form) {
   const auto disk = [](const std::string& spring) {
