@@ -148,6 +148,7 @@ bool MassMatrixHistory::nearly_singular() const { return least_share < 1e-6; }
 
 bool MassMatrixHistory::has_negative_inertia() const {
   if (!(end.smallest_eigenvalue < 0)) return false;
+  if (end.determinant_sign < 0) return true;
   const DenseMatrix M = decoupled(last);
   const double size = M.cwiseAbs().maxCoeff();
   return end.smallest_eigenvalue < -1e-12 * size && (M - M.transpose()).cwiseAbs().maxCoeff() <= 1e-10 * size;
@@ -210,10 +211,8 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
 
 std::string describe_sound(const MassMatrixHistory& h) {
   if (h.last.size == 0) return "Nothing moves.";
-  return std::string("The mass matrix is not the reason: it is ") +
-         (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
-         " as it was at the start. Condition of M " + brief(h.end.condition) + " (at the start " +
-         brief(h.start.condition) + ").";
+  return "The mass matrix is not the reason: it is positive definite as it was at the start. Condition of M " +
+         brief(h.end.condition) + " (at the start " + brief(h.start.condition) + ").";
 }
 
 double fastest_mode(const Model& model, const DenseSystem& system) {

@@ -34,8 +34,9 @@ struct MassMatrixHistory {
   /// M is so near to being singular that a motion has nothing left to be accelerated by but rounding and chance: with
   /// ½ λ q̇² bounded rates grow as 1/√λ, and come to where λ is zero in a finite time and with ever shorter steps.
   [[nodiscard]] bool nearly_singular() const;
-  /// M is symmetric and not positive definite: a motion has negative inertia, as in no structure. The strict
-  /// formulations have no symmetric M, and what its symmetric part is says little.
+  /// M is symmetric and not positive definite, or its determinant is negative: a motion has negative inertia, as in no
+  /// structure. The strict formulations have no symmetric M; of one with a positive determinant the symmetric part says
+  /// little.
   [[nodiscard]] bool has_negative_inertia() const;
   /// M, positive definite at the start, is or was something else since, or is about to be.
   [[nodiscard]] bool lost_definiteness() const;

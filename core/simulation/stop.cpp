@@ -105,7 +105,7 @@ std::string explain(Stop& stop, double time, const MassMatrixHistory* history, c
   if (!stop.physical) return text;
   if (history == nullptr) return text + " The mass matrix, with so many rows, was not examined.";
   const bool sound = stop.status != RunStatus::singular && !history->lost_definiteness() &&
-                     !history->has_negative_inertia() && !history->end.weakest.empty();
+                     history->end.smallest_eigenvalue > 0 && !history->end.weakest.empty();
   return text + " " + (sound ? describe_sound(*history) : describe(*history, layout));
 }
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/stop.hpp"
 #include "withy/tests/simulation/oscillator.hpp"
 
 namespace withy {
@@ -75,6 +76,22 @@ TEST(MassMatrix, definiteness_is_lost_by_sign_eigenvalue_or_condition) {
   EXPECT_FALSE(history.lost_definiteness());
   history.change = {0.1, 0.2};
   EXPECT_TRUE(history.lost_definiteness());
+}
+
+// Of a matrix that is not symmetric the determinant decides: one of the motions has negative inertia where it is < 0.
+TEST(MassMatrix, that_was_never_definite_is_not_acquitted) {
+  const Layout layout = boom().layout();
+  const auto told = [&](const std::vector<double>& mass) {
+    Stop stop{RunStatus::diverged, "it grows"};
+    MassMatrixHistory h;
+    h.first = h.last = {2, mass, {}, {}};
+    h.start = h.end = conditioning(h.last);
+    return explain(stop, 1, &h, layout);
+  };
+  EXPECT_THAT(told({1, 0.5, 0, -0.1}), HasSubstr("as it was at the start, so that a motion has negative inertia"));
+  // An indefinite symmetric part says little where the determinant is positive, but M is no structure's either.
+  EXPECT_THAT(told({1, 3, 0, 1}), HasSubstr("The mass matrix is indefinite as it was at the start"));
+  EXPECT_THAT(told({1, 0.5, 0.5, 1}), HasSubstr("The mass matrix is not the reason"));
 }
 
 // The mode's inertia falls to 1e-14 of what it was, the hinge's is 4 throughout. In inches instead of metres the mode's
