@@ -13,15 +13,17 @@ namespace {
 
 using Triplet = Eigen::Triplet<double>;
 
-/// The whole matrix from triplets of one triangle or both, rows from 0. Where both are given they must agree.
+/// The whole matrix from triplets, rows from 0: all of it where an element off the diagonal stands there on both sides,
+/// and then the sides must agree; else each element on one side of the diagonal, whichever. Programs that number their
+/// rows otherwise than the nodes write a triangle of theirs, whose elements are on either side here.
 SparseMatrix symmetric(const std::vector<Triplet>& triplets, Eigen::Index size, const std::filesystem::path& file) {
   SparseMatrix given(size, size);
   given.setFromTriplets(triplets.begin(), triplets.end());
   SparseMatrix lower = given.triangularView<Eigen::StrictlyLower>();
   const SparseMatrix upper = SparseMatrix(given.triangularView<Eigen::StrictlyUpper>()).transpose();
-  if (lower.norm() == 0) {
-    lower = upper;
-  } else if (upper.norm() != 0 && (lower - upper).norm() > 1e-9 * lower.norm()) {
+  if (SparseMatrix(lower.cwiseProduct(upper)).nonZeros() == 0) {
+    lower += upper;
+  } else if ((lower - upper).norm() > 1e-9 * lower.norm()) {
     throw InputError(file.string() + ": the matrix is not symmetric; need symmetric matrices");
   }
   SparseMatrix all = lower + SparseMatrix(lower.transpose());

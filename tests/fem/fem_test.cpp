@@ -145,6 +145,35 @@ TEST(Files, of_abaqus_are_read_in_every_form) {
   }
 }
 
+/// A triangle of the program's own order of rows has elements on either side of the diagonal of another order. Where
+/// one element stands on both sides the whole matrix is given, and what one side lacks is zero.
+TEST(Files, of_abaqus_may_have_a_triangle_in_any_order_of_nodes) {
+  const Case c(data / "brick", 0);
+  const Folder folder;
+  const SparseMatrix& K = c.matrices.K;
+  const auto place = [&](Eigen::Index row) { return 37 * (row / 3) % 101; };  // of a node in the program's order
+  std::ostringstream named, numbered, lopsided;
+  for (std::ostringstream* o : {&named, &numbered, &lopsided}) o->precision(17);
+  for (Eigen::Index j = 0; j < K.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator it(K, j); it; ++it) {
+      const auto row = it.row(), column = it.col();
+      if (row != 3 || column != 0) lopsided << row + 1 << ' ' << column + 1 << "  " << it.value() << '\n';
+      if (place(row) < place(column) || (row / 3 == column / 3 && row < column)) continue;
+      named << row / 3 + 1 << ',' << row % 3 + 1 << ", " << column / 3 + 1 << ',' << column % 3 + 1 << ", "
+            << it.value() << '\n';
+      numbered << row + 1 << ' ' << column + 1 << "  " << it.value() << '\n';
+    }
+  }
+  for (const auto& text : {named.str(), numbered.str()}) {
+    const NamedMatrix read = read_abaqus(folder.with("K.mtx", text), c.mesh);
+    // The two sides of the file's own matrix agree to rounding.
+    EXPECT_LT((arranged(read, c.matrices.nodes) - K).norm(), 1e-12 * K.norm());
+  }
+  EXPECT_NE(K.coeff(3, 0), 0);
+  EXPECT_THAT(refusal([&] { (void)read_abaqus(folder.with("K.mtx", lopsided.str()), c.mesh); }),
+              HasSubstr("the matrix is not symmetric"));
+}
+
 TEST(Files, that_cannot_be_used_are_refused_with_their_place) {
   const Folder folder;
   const Mesh mesh = read_mesh(data / "brick.inp");
