@@ -34,6 +34,33 @@ void name_parts(std::vector<Part>& parts, const char* what, Tree& tree, Diagnost
   }
 }
 
+/// Joints that move on the rigid part that a link is of, without the one that holds it; `mass` grows by that part's.
+std::vector<const Joint*> moving_on(const Tree& tree, int link, double& mass) {
+  mass += tree.links[static_cast<std::size_t>(link)].mass;
+  std::vector<const Joint*> all;
+  for (const Joint& joint : tree.joints) {
+    if (joint.parent != link) continue;
+    const auto more = joint.type == "weld" ? moving_on(tree, joint.child, mass) : std::vector<const Joint*>{&joint};
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+
+/// A free part without mass and with a single joint on it: the part can go back as far as the joint goes forth, and
+/// nothing that has mass moves.
+void check_free(const Tree& tree, Diagnostics& diagnostics) {
+  for (const Joint& joint : tree.joints) {
+    if (joint.type != "free") continue;
+    double mass = 0;
+    const auto on_it = moving_on(tree, joint.child, mass);
+    if (mass == 0 && on_it.size() == 1)
+      diagnostics.error(tree.links[static_cast<std::size_t>(joint.child)].place,
+                        fmt::format("the link floats by the joint {}, carries no mass, and only the joint {} moves on "
+                                    "it: its acceleration would be undefined; give it an inertia, or fix a joint",
+                                    in_quotes(joint.name), in_quotes(on_it.front()->name)));
+  }
+}
+
 }  // namespace
 
 void check_tree(Tree& tree, Diagnostics& diagnostics) {
@@ -57,6 +84,7 @@ void check_tree(Tree& tree, Diagnostics& diagnostics) {
                       "give it an inertia, or fix the joint",
                       in_quotes(joint.name)));
   }
+  if (diagnostics.ok()) check_free(tree, diagnostics);
 }
 
 }  // namespace withy::exchange

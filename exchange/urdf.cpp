@@ -61,13 +61,19 @@ void describe_joint(const Element& element, Joint& joint, Tree& tree, Diagnostic
   }
   if (dynamics != nullptr) {
     const Attributes a(*dynamics, diagnostics);
-    if (joint.type == "revolute" || joint.type == "prismatic") joint.damping = a.number("damping", 0);
+    const double damping = joint.type == "weld" ? 0 : a.number("damping", 0);
+    if (joint.type == "revolute" || joint.type == "prismatic") {
+      joint.damping = damping;
+    } else if (damping != 0) {
+      tree.remarks.push_back(
+          fmt::format("joint {}: damping {} is left out, hinge-spring damps a hinge of one motion alone",
+                      in_quotes(joint.name), damping));
+    }
     if (const double friction = a.number("friction", 0); friction != 0)
       tree.remarks.push_back(
           fmt::format("joint {}: friction {} is left out; add a load hinge-friction, which needs a scale of the rate",
                       in_quotes(joint.name), friction));
-    if (joint.damping < 0)
-      Attributes(*dynamics, diagnostics).error("damping", "got a negative damping; need at least 0");
+    if (damping < 0) Attributes(*dynamics, diagnostics).error("damping", "got a negative damping; need at least 0");
   }
   if (element.child("mimic") != nullptr)
     tree.remarks.push_back(fmt::format("joint {}: <mimic> is left out, the joint is free", in_quotes(joint.name)));
@@ -133,7 +139,15 @@ Joint urdf_joint(const Element& element, int child, const std::map<std::string, 
   return joint;
 }
 
-/// Takes the link "world" out where it is the world: its joints hang on the world then.
+/// Whether the root is the world and no link of its own. It is one where it is to float, unless all on it floats.
+bool is_world(const Tree& tree, int root, bool free_base) {
+  const Link& base = tree.links[static_cast<std::size_t>(root)];
+  if (base.name != "world" || base.mass != 0 || tree.links.size() == 1) return false;
+  return !free_base || std::all_of(tree.joints.begin(), tree.joints.end(),
+                                   [&](const Joint& j) { return j.parent != root || j.type == "free"; });
+}
+
+/// Takes the link "world" out: its joints hang on the world then.
 void take_world_out(Tree& tree, int root) {
   tree.links.erase(tree.links.begin() + root);
   tree.joints.erase(tree.joints.begin() + root);
@@ -206,8 +220,7 @@ Tree read_urdf(const Element& robot, bool free_base, bool mend_inertias, Diagnos
   }
   if (!diagnostics.ok()) return tree;
   check_circles(tree, diagnostics);
-  const Link& base = tree.links[static_cast<std::size_t>(root)];
-  if (diagnostics.ok() && base.name == "world" && base.mass == 0 && tree.links.size() > 1) take_world_out(tree, root);
+  if (diagnostics.ok() && is_world(tree, root, free_base)) take_world_out(tree, root);
   check_tree(tree, diagnostics);
   return tree;
 }

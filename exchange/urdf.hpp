@@ -15,7 +15,8 @@ namespace withy::exchange {
 
 /// Reads <robot>. Frames: a link has the frame of its joint; `rpy` turns about fixed x, then y, then z.
 /// \param free_base whether the root link floats; otherwise it is fixed to the world. A root link called "world"
-/// without inertia is the world itself. \param mend_inertias as InertiaRule
+/// without inertia is the world itself, unless it is to float with what is fixed to it. \param mend_inertias as
+/// InertiaRule
 Tree read_urdf(const Element& robot, bool free_base, bool mend_inertias, Diagnostics& diagnostics);
 
 struct Urdf {

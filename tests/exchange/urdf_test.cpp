@@ -1,14 +1,17 @@
 // Trees of URDF have the accelerations that mechanics gives them, by hand, and go to URDF and back.
 #include "withy/exchange/urdf.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "withy/core/model/model.hpp"
+#include "withy/scene/scene_error.hpp"
 #include "withy/study/prepared.hpp"
 #include "withy/tests/exchange/models.hpp"
 
@@ -131,6 +134,62 @@ TEST(Urdf, WhatItCannotSayIsSaidWithTheName) {
                             "{type: planar, parent: world, child: b}"})
     EXPECT_THROW(written(hinge), std::domain_error) << hinge;
   EXPECT_NO_THROW(written("{type: revolute, axis: [1, 0, 0], parent: world, child: b}"));
+}
+
+/// The end of a robot of two links, on a joint of this type.
+std::string two_links(const std::string& root, const std::string& root_mass, const std::string& type,
+                      const std::string& rest = "") {
+  const auto mass = [](const std::string& kilograms) {
+    return "<inertial><mass value='" + kilograms + "'/><inertia ixx='1' iyy='1' izz='1'/></inertial>";
+  };
+  return "<robot name='r'><link name='" + root + "'>" + (root_mass.empty() ? "" : mass(root_mass)) +
+         "</link><link name='b'>" + mass("2") + "</link><joint name='j' type='" + type + "'><parent link='" + root +
+         "'/><child link='b'/>" + rest + "</joint></robot>";
+}
+
+TEST(Urdf, DampingThatNoLoadTakesOverIsTold) {
+  for (const char* type : {"planar", "floating"}) {
+    const Scratch file(".urdf", two_links("a", "3", type, "<dynamics damping='4'/>"));
+    EXPECT_THAT(imported({file.file(), {}, false, 0, 0}).remarks,
+                testing::ElementsAre(testing::HasSubstr("joint \"j\": damping 4 is left out")))
+        << type;
+  }
+  const Scratch file(".urdf", two_links("a", "3", "fixed", "<dynamics damping='4'/>"));
+  EXPECT_THAT(imported({file.file(), {}, false, 0, 0}).remarks, testing::IsEmpty());
+}
+
+/// A massless root called "world" is the world, but one that is to float is a link, with all that is fixed to it.
+TEST(Urdf, AFreeBaseFloatsAlsoWhereItIsCalledWorld) {
+  for (const auto& [type, speeds, floating] : {std::tuple("fixed", 0, 6), std::tuple("floating", 6, 6)}) {
+    const Scratch file(".urdf", two_links("world", "", type));
+    const auto count = [&](bool free_base) {
+      const auto prepared = scene_of({file.file(), {}, free_base, 0, 0}).prepare();
+      return static_cast<int>(prepared->equations->layout().speeds);
+    };
+    EXPECT_EQ(count(false), speeds) << type;
+    EXPECT_EQ(count(true), floating) << type;
+  }
+  const Scratch file(".urdf", two_links("world", "", "fixed"));
+  host::Equations f(scene_of({file.file(), {}, true, 0, 0}));
+  EXPECT_NEAR(accelerations(f, f.y0()).at("base_of_world.vz"), -9.81, 1e-12);
+}
+
+/// The base could turn one way and the link on it the other, and nothing that has mass would move.
+TEST(Urdf, AFloatingBaseWithoutMassUnderOneJointIsRefused) {
+  const auto refused = [](const std::string& text) {
+    const Scratch file(".urdf", text);
+    try {
+      static_cast<void>(imported({file.file(), {}, true, 0, 0}));
+    } catch (const SceneError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  for (const char* root : {"base", "world"})
+    EXPECT_THAT(refused(two_links(root, "", "continuous")),
+                testing::HasSubstr("carries no mass, and only the joint \"j\" moves on it"));
+  EXPECT_EQ(refused(two_links("base", "3", "continuous")), "");
+  EXPECT_EQ(refused(two_links("base", "", "fixed")), "");
 }
 
 }  // namespace
