@@ -8,6 +8,7 @@
 
 #include "elastodyn.hpp"
 #include "mjcf.hpp"
+#include "relaxation.hpp"
 #include "scene_text.hpp"
 #include "urdf.hpp"
 #include "withy/scene/document.hpp"
@@ -40,11 +41,11 @@ std::string origin_of_path(const std::string& path, const Tree& tree, const Flex
   return {};
 }
 
-/// Makes the scene; what is wrong with it is said of the files it comes from.
-void check_made(const std::string& text, const Tree& tree, const FlexibleLinks& flexible, const std::string& file,
-                Registry& registry) {
+/// Makes the scene and gives it; what is wrong with it is said of the files it comes from.
+Scene check_made(const std::string& text, const Tree& tree, const FlexibleLinks& flexible, const std::string& file,
+                 Registry& registry) {
   try {
-    static_cast<void>(parse_scene(text, scene_made, registry));
+    return parse_scene(text, scene_made, registry);
   } catch (const SceneError& e) {
     std::vector<Diagnostic> problems;
     std::vector<std::string> origins;
@@ -75,12 +76,16 @@ ImportedScene import_tree(const ModelImport& what, const std::string& text, Regi
   } else {
     diagnostics.error(root.place, "got <" + root.name + ">; need <robot> (URDF) or <mujoco> (MJCF)");
   }
+  if (diagnostics.ok() && has_relaxation(tree)) {
+    const Scene rigid = check_made(scene_text(tree, {}, what.file), tree, {}, what.file, registry);
+    settle_relaxation(tree, rigid, diagnostics);
+  }
   if (!diagnostics.ok()) throw SceneError(what.file, diagnostics.errors());
   FlexibleLinks flexible;
   if (!what.flexible.empty()) flexible = read_flexible(read_bytes(what.flexible), what.flexible, tree);
   scene.text = scene_text(tree, flexible, what.file);
   scene.remarks = tree.remarks;
-  check_made(scene.text, tree, flexible, what.file, registry);
+  static_cast<void>(check_made(scene.text, tree, flexible, what.file, registry));
   return scene;
 }
 
@@ -111,7 +116,7 @@ ImportedScene import_model(const ModelImport& what, Registry& registry) {
   const ElastoDynBeam beam = read_elastodyn(text, what.file);
   ImportedScene scene{scene_text(beam, what.length, what.tip_mass, what.file),
                       beam.tower ? "ElastoDyn tower" : "ElastoDyn blade", beam.remarks};
-  check_made(scene.text, {}, {}, what.file, registry);
+  static_cast<void>(check_made(scene.text, {}, {}, what.file, registry));
   return scene;
 }
 

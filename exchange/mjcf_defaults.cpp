@@ -2,20 +2,48 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cctype>
+#include <string_view>
 
 #include "withy/scene/names.hpp"
 
 namespace withy::exchange {
+namespace {
+
+/// The forms of an orientation beside `quat`: they are one attribute, of which the last one given counts.
+constexpr std::array<std::string_view, 4> turns = {"axisangle", "euler", "xyaxes", "zaxis"};
+
+bool is_turn(std::string_view key) { return std::find(turns.begin(), turns.end(), key) != turns.end(); }
+
+/// Whether an element says itself what a default would.
+bool says(const Element& element, const std::string& key) {
+  if (!is_turn(key)) return element.find(key) != nullptr;
+  return std::any_of(turns.begin(), turns.end(), [&](std::string_view turn) { return element.find(turn) != nullptr; });
+}
+
+}  // namespace
+
+void check_orientation(const Element& element, Diagnostics& diagnostics) {
+  std::vector<std::string> given;
+  for (const auto& [key, value] : element.attributes)
+    if (key == "quat" || is_turn(key)) given.push_back(key);
+  if (given.size() > 1)
+    diagnostics.error(element.place, fmt::format("got the orientations {}; need one of them", listed(given)));
+}
 
 void MjcfDefaults::add(const Element& element, const std::string& around) {
   const std::string* called = element.find("class");
   const std::string name = called != nullptr ? *called : "main";
   auto& mine = classes_[name];
   if (!around.empty()) mine = classes_[around];
-  for (const Element& e : element.children)
-    if (e.name != "default")
-      for (const auto& [key, value] : e.attributes) mine[e.name][key] = value;
+  for (const Element& e : element.children) {
+    if (e.name == "default") continue;
+    OfElement& all = mine[e.name];
+    std::erase_if(all, [&](const auto& one) { return is_turn(one.first) && says(e, one.first); });
+    for (const auto& [key, value] : e.attributes) all[key] = value;
+  }
   for (const Element& e : element.children)
     if (e.name == "default") add(e, name);
 }
@@ -23,6 +51,7 @@ void MjcfDefaults::add(const Element& element, const std::string& around) {
 Element MjcfDefaults::completed(const Element& element, const std::string& around, Diagnostics& diagnostics) const {
   const std::string* own = element.find("class");
   const std::string name = own != nullptr ? *own : around.empty() ? "main" : around;
+  check_orientation(element, diagnostics);
   Element whole{element.name, element.attributes, {}, element.place};
   const auto found = classes_.find(name);
   if (found == classes_.end()) {
@@ -32,17 +61,12 @@ Element MjcfDefaults::completed(const Element& element, const std::string& aroun
   const auto of_element = found->second.find(element.name);
   if (of_element == found->second.end()) return whole;
   for (const auto& [key, value] : of_element->second)
-    if (element.find(key) == nullptr) whole.attributes.emplace_back(key, value);
+    if (!says(element, key)) whole.attributes.emplace_back(key, value);
   return whole;
 }
 
 Matrix3 MjcfAngles::rotation(const Element& element, Diagnostics& diagnostics) const {
   const Attributes a(element, diagnostics);
-  if (const auto q = a.numbers("quat", 4, 4)) {
-    const Eigen::Quaterniond quaternion((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
-    if (quaternion.norm() > 0) return quaternion.normalized().toRotationMatrix();
-    a.error("quat", "got 0 0 0 0; need a quaternion");
-  }
   if (const auto v = a.numbers("axisangle", 4, 4)) {
     const Vector3 axis((*v)[0], (*v)[1], (*v)[2]);
     if (axis.norm() > 0) return Eigen::AngleAxisd(unit * (*v)[3], axis.normalized()).toRotationMatrix();
@@ -72,6 +96,11 @@ Matrix3 MjcfAngles::rotation(const Element& element, Diagnostics& diagnostics) c
   }
   if (element.find("zaxis") != nullptr)
     return rotation_between(Vector3::UnitZ(), a.direction("zaxis", Vector3::UnitZ()));
+  if (const auto q = a.numbers("quat", 4, 4)) {
+    const Eigen::Quaterniond quaternion((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
+    if (quaternion.norm() > 0) return quaternion.normalized().toRotationMatrix();
+    a.error("quat", "got 0 0 0 0; need a quaternion");
+  }
   return Matrix3::Identity();
 }
 

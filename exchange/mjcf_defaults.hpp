@@ -10,7 +10,8 @@
 
 namespace withy::exchange {
 
-/// Attributes by default class and element; a class has those of the classes around it.
+/// Attributes by default class and element; a class has those of the classes around it. Of axisangle, euler, xyaxes and
+/// zaxis the innermost counts alone, and before any `quat`, also one further inside, as in MuJoCo.
 class MjcfDefaults {
  public:
   /// \param element <default>, with those inside
@@ -23,12 +24,15 @@ class MjcfDefaults {
   std::map<std::string, std::map<std::string, OfElement>> classes_;
 };
 
+/// Reports an element that gives its orientation in several forms, before defaults complete it.
+void check_orientation(const Element& element, Diagnostics& diagnostics);
+
 /// What <compiler> says of angles.
 struct MjcfAngles {
   double unit = 3.14159265358979323846 / 180;  ///< [rad]
   std::string euler = "xyz";
 
-  /// The rotation by quat, axisangle, euler, xyaxes or zaxis; identity where there is none of them.
+  /// The rotation by axisangle, euler, xyaxes or zaxis, else by quat; identity where there is none of them.
   [[nodiscard]] Matrix3 rotation(const Element& element, Diagnostics& diagnostics) const;
 };
 

@@ -17,8 +17,9 @@ struct MassProperties {
   void add(const MassProperties& other);
 };
 
-/// Of a geom whose attributes are complete: its density, 1000 kg/m³ unless it says otherwise, fills it evenly.
-/// Nothing where it has no mass (a plane); meshes are reported, for their mass is not in the file.
+/// Of a geom whose attributes are complete: its density, 1000 kg/m³ unless it says otherwise, fills it evenly, or with
+/// `shellinertia` covers its surface [kg/m²]. Nothing where it has no mass (a plane, or looks of density 0); meshes are
+/// reported, for their mass is not in the file.
 std::optional<MassProperties> mass_of_geom(const Element& geom, const MjcfAngles& angles, Diagnostics& diagnostics);
 
 }  // namespace withy::exchange

@@ -20,6 +20,13 @@ struct Link {
   Matrix3 inertia = Matrix3::Zero();  ///< about the centre of mass, link axes [kg m²]
 };
 
+/// A spring and damper by how the joint comes to rest, MuJoCo's `springdamper`.
+struct Relaxation {
+  double time = 0;                    ///< constant of the decay [s]
+  double ratio = 0;                   ///< of the damping to the critical one
+  bool spring = true, damper = true;  ///< which of the two acts
+};
+
 /// What holds a link.
 struct Joint {
   std::string name;
@@ -28,11 +35,13 @@ struct Joint {
   Vector3 axis = Vector3::UnitX();  ///< of `revolute` and `prismatic`; normal of `planar`; axes of F
   int parent = -1;                  ///< index among the links; −1: world
   int child = 0;
-  Pose offset;                        ///< of the hinge frame F in the parent link's frame
-  Vector3 point = Vector3::Zero();    ///< of the hinge frame M in the child's frame, whose axes it has
-  double stiffness = 0, damping = 0;  ///< of a spring and damper on the coordinate
-  double free_position = 0;           ///< where the spring is slack
-  std::string remark;                 ///< what the file says beside, for the scene's comment
+  Pose offset;                           ///< of the hinge frame F in the parent link's frame
+  Vector3 point = Vector3::Zero();       ///< of the hinge frame M in the child's frame, whose axes it has
+  double stiffness = 0, damping = 0;     ///< of a spring and damper on the coordinate
+  double free_position = 0;              ///< where the spring is slack
+  std::optional<Relaxation> relaxation;  ///< gives stiffness and damping (relaxation.hpp)
+  double armature = 0;                   ///< inertia on each speed, which counts for relaxations alone
+  std::string remark;                    ///< what the file says beside, for the scene's comment
 };
 
 struct Tree {

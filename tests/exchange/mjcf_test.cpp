@@ -1,15 +1,31 @@
 // Models of MJCF have the accelerations that mechanics gives them, by hand; orientations in every form are the same.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <tuple>
 
+#include "withy/scene/scene_error.hpp"
 #include "withy/tests/exchange/models.hpp"
 
 namespace withy::exchange {
 namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+ImportedScene model_of(const std::string& inside) {
+  const Scratch file(".xml", "<mujoco>" + inside + "</mujoco>");
+  return imported({file.file(), {}, false, 0, 0});
+}
+
+host::Equations equations_of(const std::string& inside) {
+  return host::Equations(host::Scene::parse(plugins(), model_of(inside).text));
+}
 
 /// A pole on a cart: its centre of mass is a above its pivot, its moment of inertia about that I. And a plate in free
 /// fall on three joints of one body: its centre of mass falls, it does not start to turn.
@@ -110,6 +126,200 @@ TEST(Mjcf, AGeomGivenByItsEndsHasTheMassOfTheSameOneGivenByItsFrame) {
     EXPECT_NEAR(scene("type='" + form + "' fromto='0.2 0.1 0.1 0.2 0.9 0.1' size='0.05 0.07 0.07'"), want, 1e-12)
         << form;
   }
+}
+
+/// A pendulum of 2 kg at 0.5 m on a hinge along y: 0.6 kg m² about it.
+TEST(Mjcf, WeightSpringsAndDampersThatTheModelSwitchesOffDoNotAct) {
+  const double q = 0.4, w = 1.5;
+  const auto acceleration = [&](const std::string& option) {
+    host::Equations f = equations_of(option + R"(<worldbody><body name="b">
+<joint name="j" axis="0 1 0" stiffness="3" damping="0.2"/><inertial mass="2" pos="0.5 0 0" diaginertia=".1 .1 .1"/>
+</body></worldbody>)");
+    std::vector<double> y = f.y0();
+    put(f, y, "j", q);
+    put(f, y, "j.rate", w);
+    return accelerations(f, y).at("j.rate");
+  };
+  const double weight = 2 * 9.81 * 0.5 * std::cos(q), spring = -3 * q, damper = -0.2 * w;
+  EXPECT_NEAR(acceleration(""), (weight + spring + damper) / 0.6, 1e-12);
+  EXPECT_NEAR(acceleration("<option><flag gravity='disable'/></option>"), (spring + damper) / 0.6, 1e-12);
+  EXPECT_NEAR(acceleration("<option gravity='0 0 -9.81'><flag spring='disable'/></option>"), (weight + damper) / 0.6,
+              1e-12);
+  EXPECT_NEAR(acceleration("<option><flag damper='disable' contact='disable'/></option>"), (weight + spring) / 0.6,
+              1e-12);
+  EXPECT_NEAR(acceleration("<option><flag gravity='disable' passive='disable'/></option>"), 0, 1e-12);
+  EXPECT_NEAR(acceleration("<option><flag spring='disable'/></option><option><flag spring='enable'/></option>"),
+              (weight + spring + damper) / 0.6, 1e-12);
+  EXPECT_THAT(model_of(R"(<option><flag spring="disable"/></option><worldbody><body><joint name="j" stiffness="3"/>
+<geom size="0.1"/></body></worldbody>)")
+                  .remarks,
+              ElementsAre("joint \"j\": stiffness 3 is switched off by <flag>"));
+}
+
+/// Two carts on one line, one on the other. What a joint feels while the other is free: the first alone, and what is
+/// left of the second when the first gives way. Armature counts in that, and not in the motion.
+TEST(Mjcf, ASpringdamperIsAsStiffAsTheInertiaThatTheJointFeelsAsks) {
+  const double m = 3, n = 2, armature = 0.7, T = 0.5, ratio = 0.3;
+  const auto got = [&](const std::string& option) {
+    host::Equations f = equations_of(option + R"(<default><joint type="slide" axis="1 0 0" springdamper="0.5 0.3"/>
+<default class="plain"><joint springdamper="0 0"/></default></default>
+<worldbody><body><joint name="a" armature="0.7" stiffness="99"/><inertial mass="3" pos="0 0 0" diaginertia="1 1 1"/>
+<body><joint name="b"/><inertial mass="2" pos="0 0 0" diaginertia="1 1 1"/></body></body>
+<body><joint name="c" class="plain" stiffness="8"/><inertial mass="4" pos="0 0 0" diaginertia="1 1 1"/></body>
+</worldbody>)");
+    std::vector<double> y = f.y0();
+    put(f, y, "a", 0.2);
+    put(f, y, "b", -0.1);
+    put(f, y, "c", 0.5);
+    put(f, y, "a.rate", 0.3);
+    put(f, y, "b.rate", 0.4);
+    return accelerations(f, y);
+  };
+  const double of_a = m + armature, of_b = n - n * n / (m + n + armature);
+  Eigen::Matrix2d M;
+  M << m + n, n, n, n;
+  const auto want = [&](double spring, double damper) -> Eigen::Vector2d {
+    const double k = spring / (T * T * ratio * ratio), c = damper * 2 / T;
+    return M.ldlt().solve(-Eigen::Vector2d(of_a * (k * 0.2 + c * 0.3), of_b * (k * -0.1 + c * 0.4)));
+  };
+  for (const auto& [option, spring, damper] :
+       {std::tuple("", 1, 1), std::tuple("<option><flag spring='disable'/></option>", 0, 1),
+        std::tuple("<option><flag damper='disable'/></option>", 1, 0)}) {
+    const auto all = got(option);
+    const Eigen::Vector2d ab = want(spring, damper);
+    EXPECT_NEAR(all.at("a.rate"), ab[0], 1e-12 * ab.norm()) << option;
+    EXPECT_NEAR(all.at("b.rate"), ab[1], 1e-12 * ab.norm()) << option;
+    EXPECT_NEAR(all.at("c.rate"), -spring * 8 * 0.5 / 4, 1e-12) << option;
+  }
+}
+
+/// In MuJoCo axisangle, euler, xyaxes and zaxis are one attribute, which counts before `quat`, wherever that stands.
+TEST(Mjcf, OrientationsOfDefaultClassesGiveWayToThoseOfTheElement) {
+  const auto scene = [](const std::string& defaults, const std::string& turned) {
+    host::Equations f =
+        equations_of("<default>" + defaults + "</default><worldbody><body><joint name='j' axis='0 1 1'/><geom " +
+                     turned + " type='box' size='0.1 0.2 0.3' pos='0.1 0.1 -0.3'/></body></worldbody>");
+    return accelerations(f, f.y0()).at("j.rate");
+  };
+  const std::string quat = "quat='0.9 0.3 0.1 0'", euler = "euler='10 20 30'", about = "axisangle='1 1 0 40'",
+                    z = "zaxis='0 1 0.3'", xy = "xyaxes='1 1 0 0 1 1'";
+  const auto geom = [](const std::string& turned) { return "<geom " + turned + "/>"; };
+  for (const std::string& outer : {quat, euler, about, z, xy})
+    for (const std::string& inner : {euler, about, z, xy}) {
+      const double want = scene("", inner);
+      EXPECT_NEAR(scene(geom(outer), inner), want, 1e-12) << outer << " and " << inner;
+      const std::string nested = geom(outer) + "<default class='c'>" + geom(inner) + "</default>";
+      EXPECT_NEAR(scene(nested, "class='c'"), want, 1e-12) << nested;
+      EXPECT_NEAR(scene(geom(inner), quat), want, 1e-12) << inner << " and " << quat;
+    }
+  EXPECT_GT(std::abs(scene("", euler) - scene("", quat)), 1e-3);
+  EXPECT_NEAR(scene(geom(quat), ""), scene("", quat), 1e-12);
+}
+
+/// What a joint feels of a geom at its place, by the acceleration that a spring gives.
+double felt(const std::string& joint, const std::string& geom) {
+  host::Equations f = equations_of("<option gravity='0 0 0'/><worldbody><body><joint name='j' stiffness='1' " + joint +
+                                   "/><geom shellinertia='true' " + geom + "/></body></worldbody>");
+  std::vector<double> y = f.y0();
+  put(f, y, "j", 1);
+  return -1 / accelerations(f, y).at("j.rate");
+}
+
+/// By hand, surface by surface, in kg/m²; of an ellipsoid that is not a sphere as MuJoCo 3 has it.
+TEST(Mjcf, AShellHasItsMassOnItsSurface) {
+  const double pi = std::numbers::pi, r = 0.2, h = 0.5, a = 0.2, b = 0.5, c = 0.3;
+  const double ball = 4 * pi * r * r, side = 4 * pi * r * h, discs = 2 * pi * r * r;
+  const double x = 8 * b * c, y = 8 * c * a, z = 8 * a * b;
+  struct Case {
+    std::string geom;
+    double mass, about_x, about_z;
+  };
+  const std::array<Case, 5> cases = {{
+      {"size='0.2'", ball, ball * r * r * 2 / 3, ball * r * r * 2 / 3},
+      {"type='capsule' size='0.2 0.5'", ball + side,
+       side * (r * r / 2 + h * h / 3) + ball * (r * r * 2 / 3 + h * h + h * r), side * r * r + ball * r * r * 2 / 3},
+      {"type='cylinder' size='0.2 0.5'", side + discs, side * (r * r / 2 + h * h / 3) + discs * (r * r / 4 + h * h),
+       side * r * r + discs * r * r / 2},
+      {"type='box' size='0.2 0.5 0.3'", x + y + z,
+       x * (b * b + c * c) / 3 + y * (b * b + c * c / 3) + z * (b * b / 3 + c * c),
+       x * (a * a + b * b / 3) + y * (a * a / 3 + b * b) + z * (a * a + b * b) / 3},
+      {"type='ellipsoid' size='0.2 0.5 0.3'", 1.3481498679416252, 0.13342369714, 0.11472351672},
+  }};
+  for (const Case& one : cases) {
+    const double exact = one.geom.find("ellipsoid") == std::string::npos ? 1e-12 : 5e-6;
+    for (const auto& [density, share] : {std::pair("density='3'", 3.0), std::pair("mass='7'", 7 / one.mass)}) {
+      const std::string geom = one.geom + " " + density;
+      EXPECT_NEAR(felt("type='slide'", geom) / (share * one.mass), 1, 1e-12) << geom;
+      EXPECT_NEAR(felt("axis='1 0 0'", geom) / (share * one.about_x), 1, exact) << geom;
+      EXPECT_NEAR(felt("axis='0 0 1'", geom) / (share * one.about_z), 1, exact) << geom;
+    }
+  }
+}
+
+TEST(Mjcf, LooksHaveNoMassAndAnInertialStandsWhereGeomsHaveNone) {
+  const auto scene = [](const std::string& compiler, const std::string& inside) {
+    host::Equations f =
+        equations_of(compiler + "<worldbody><body><joint name='j' axis='0 1 1'/>" + inside + "</body></worldbody>");
+    return accelerations(f, f.y0()).at("j.rate");
+  };
+  const std::string ball = "<geom size='0.1' pos='0.3 0 0'/>", from_geoms = "<compiler inertiafromgeom='true'/>",
+                    inertial = "<inertial mass='2' pos='0.1 0.2 0' diaginertia='1 2 2'/>";
+  const double want = scene("", ball), want_inertial = scene("", inertial);
+  EXPECT_NEAR(scene("", ball + "<geom type='mesh' mesh='m' density='0'/><geom type='mesh' mesh='m' mass='0'/>"), want,
+              1e-12);
+  EXPECT_NEAR(scene("<default><default class='look'><geom density='0'/></default></default>",
+                    ball + "<geom class='look' type='box' size='1 1 1'/>"),
+              want, 1e-12);
+  EXPECT_NEAR(scene(from_geoms, inertial + ball), want, 1e-12);
+  EXPECT_NEAR(scene(from_geoms, inertial), want_inertial, 1e-12);
+  EXPECT_NEAR(scene(from_geoms, inertial + "<geom type='mesh' mesh='m' density='0'/>"), want_inertial, 1e-12);
+}
+
+TEST(Mjcf, BodiesWithoutNamesOnOneLineHaveNamesOfTheirOwn) {
+  const std::string part = "<body><joint axis='1 0 0'/><joint axis='0 1 0'/><geom size='0.1'/></body>";
+  host::Equations f = equations_of("<worldbody><body name='body_1_1'><joint name='body_1_joint_2'/>" + part + part +
+                                   "<geom size='0.1'/></body></worldbody>");
+  EXPECT_EQ(accelerations(f, f.y0()).size(), 10u);
+  const auto scene =
+      model_of("<worldbody>\n<body name='body_3'><joint/><geom size='1'/></body>\n" + part + "\n</worldbody>");
+  EXPECT_THAT(scene.text, HasSubstr("  body_3_at_1:"));
+}
+
+TEST(Mjcf, WhatAJointOrBodyLosesIsTold) {
+  const ImportedScene scene = model_of(R"(<compiler angle="radian"/><worldbody><body name="b"><plugin plugin="p"/>
+<joint name="j" type="ball" range="0 0.5" springdamper="0.5 0.3"/><geom size="0.1"/></body></worldbody>)");
+  EXPECT_THAT(scene.remarks, ElementsAre("joint \"j\": springdamper 0.5 0.3 is left out",
+                                         "<plugin> on line 1: its forces are left out"));
+  EXPECT_THAT(scene.text, HasSubstr("its range 0 to 0.5 is not enforced: it limits the whole angle"));
+}
+
+TEST(Mjcf, WhatItCannotReadIsRefusedWithItsPlace) {
+  std::string problems;
+  try {
+    model_of(R"(<compiler angle="radians" inertiafromgeom="yes"/><option><flag gravity="off"/></option>
+<default><include file="x.xml"/></default>
+<worldbody><body euler="1 2 3" quat="1 0 0 0"><joint springdamper="0.5 0"/>
+<geom type="box" size="1 1 1" mesh="m"/><geom size="1" shellinertia="maybe"/><geom type="box" size="1 0 1"/>
+</body></worldbody>)");
+  } catch (const SceneError& e) {
+    problems = e.what();
+  }
+  for (const char* one :
+       {"1:9: /mujoco/compiler/@angle: got \"radians\"; need radian or degree",
+        "@inertiafromgeom: got \"yes\"; need auto, true or false", "flag/@gravity: got \"off\"; need enable or disable",
+        "2:10: /mujoco/default/include: <include> is not followed",
+        "3:12: /mujoco/worldbody/body: got the orientations euler, quat; need one of them",
+        "@springdamper: got 0.5 0; need a time constant and a damping ratio above 0, or 0 0"})
+    EXPECT_THAT(problems, HasSubstr(one));
+  try {
+    model_of(R"(<worldbody><body><joint/><geom type="box" size="1 1 1" mesh="m"/>
+<geom size="1" shellinertia="maybe"/><geom type="box" size="1 0 1"/></body></worldbody>)");
+  } catch (const SceneError& e) {
+    problems = e.what();
+  }
+  for (const char* one : {"@mesh: the box is fitted to a mesh, which is not in this file",
+                          "@shellinertia: got \"maybe\"; need true or false", "@size: need 3 sizes of a box above 0"})
+    EXPECT_THAT(problems, HasSubstr(one));
 }
 
 }  // namespace
