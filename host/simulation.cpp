@@ -4,6 +4,7 @@
 
 #include "withy/core/simulation/session.hpp"
 #include "withy/host/names.hpp"
+#include "withy/host/snapshot_parts.hpp"
 #include "withy/results/result_columns.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/prepared.hpp"
@@ -21,35 +22,6 @@ std::shared_ptr<const study::Prepared> with_one_formulation(const Scene& scene) 
 }
 
 }  // namespace
-
-struct Snapshot::Parts {
-  Checkpoint checkpoint;
-};
-
-double Snapshot::time() const { return parts_->checkpoint.state.time; }
-
-std::vector<double> Snapshot::numbers() const {
-  Checkpoint checkpoint = parts_->checkpoint;
-  Memory memory;
-  memory(checkpoint.state.time);
-  memory(checkpoint.state.y);
-  memory(checkpoint.stepper);
-  memory(checkpoint.watches);
-  return memory.numbers();
-}
-
-Snapshot Snapshot::of_numbers(std::span<const double> numbers) {
-  Checkpoint checkpoint;
-  Memory memory(numbers);
-  memory(checkpoint.state.time);
-  memory(checkpoint.state.y);
-  memory(checkpoint.stepper);
-  memory(checkpoint.watches);
-  memory.finish();
-  Snapshot snapshot;
-  snapshot.parts_ = std::make_shared<const Parts>(Parts{std::move(checkpoint)});
-  return snapshot;
-}
 
 struct Simulation::Parts {
   Parts(const Scene& scene, std::function<bool()> interrupted)
@@ -94,6 +66,7 @@ struct Simulation::Parts {
   std::vector<double> values;            ///< of the outputs
   bool row_is_now = false;               ///< `values` are of the present state
   std::vector<Event> events;
+  OriginOnce origin;
 };
 
 Simulation::Simulation(const Scene& scene, std::function<bool()> interrupted)
@@ -126,12 +99,14 @@ const std::vector<Event>& Simulation::events() const { return parts_->events; }
 
 Snapshot Simulation::snapshot() const {
   Snapshot snapshot;
-  snapshot.parts_ = std::make_shared<const Snapshot::Parts>(Snapshot::Parts{parts_->session.snapshot()});
+  snapshot.parts_ = std::make_shared<const Snapshot::Parts>(
+      Snapshot::Parts{parts_->session.snapshot(), parts_->origin(parts_->prepared->scene)});
   return snapshot;
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
   if (snapshot.parts_ == nullptr) throw std::invalid_argument("the snapshot is empty");
+  snapshot.parts_->origin.check_against(parts_->origin(parts_->prepared->scene));
   parts_->session.restore(snapshot.parts_->checkpoint);
   parts_->row_is_now = false;
   parts_->events.clear();

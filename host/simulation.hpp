@@ -20,13 +20,14 @@ struct Event {
   int direction = 0;  ///< +1: from below, −1: from above
 };
 
-/// Everything that the steps to come depend on. Copies are cheap; threads may share one.
+/// Everything that the steps to come depend on. Copies are cheap; threads may share one. An empty one, which no
+/// simulation has made, throws std::invalid_argument where it is used.
 class Snapshot {
  public:
   [[nodiscard]] double time() const;  ///< [s]
-  /// As a list of numbers, to be kept; for simulations of the same scene by the same build.
+  /// As a list of numbers, to be kept; for simulations of the same scene by the same build. Some may be infinite.
   [[nodiscard]] std::vector<double> numbers() const;
-  /// \throws std::invalid_argument where they are no snapshot.
+  /// \throws std::invalid_argument where they are no snapshot, or not all of one bit by bit.
   static Snapshot of_numbers(std::span<const double> numbers);
 
  private:
@@ -79,7 +80,8 @@ class Simulation {
 
   [[nodiscard]] Snapshot snapshot() const;
   /// Goes on from there bit by bit as the simulation did that made it, with the same inputs and times. A simulation
-  /// that was stopped goes on too. \throws std::invalid_argument where it is of another scene.
+  /// that was stopped goes on too. \throws std::invalid_argument where it is of another scene: one whose values or
+  /// files differ in more than `name`, `time`, `outputs` and `initial`; or of another build. Nothing changes then.
   void restore(const Snapshot& snapshot);
   /// The present state as JSON, in the form that `initial` of a scene and `withy eval --state` read.
   [[nodiscard]] std::string state() const;

@@ -115,6 +115,50 @@ TEST(HostedSimulation, replays_from_a_snapshot_bit_by_bit) {
   }
 }
 
+/// The same number of coordinates, rates, inputs and events is not the same scene.
+TEST(HostedSimulation, goes_back_to_snapshots_of_its_own_scene_alone) {
+  Simulation first(busy_scene());
+  first.step(0.1);
+  const Snapshot kept = first.snapshot();
+  const auto refusal = [&](const Scene& scene) -> std::string {
+    Simulation other(scene);
+    try {
+      other.restore(kept);
+    } catch (const std::invalid_argument& e) {
+      EXPECT_EQ(other.time(), 0);
+      return e.what();
+    }
+    EXPECT_EQ(other.time(), first.time());
+    return {};
+  };
+  std::string renamed = test::busy_arm, sliding = test::busy_arm;
+  for (std::size_t at = 0; (at = renamed.find("axle", at)) != std::string::npos;) renamed.replace(at, 4, "knob");
+  sliding.replace(sliding.find("type: revolute"), 14, "type: prismatic");
+  EXPECT_THAT(refusal(busy_scene().set("bodies.hub.mass", 50)), HasSubstr("of another scene"));
+  EXPECT_THAT(refusal(busy_scene().set("integrator.rtol", 1e-6)), HasSubstr("of another scene"));
+  EXPECT_THAT(refusal(Scene::parse(library(), renamed)), HasSubstr("of another scene"));
+  EXPECT_THAT(refusal(Scene::parse(library(), sliding)), HasSubstr("of another scene"));
+  // Where a run begins and ends and what it shows says nothing of the steps from a state.
+  EXPECT_EQ(refusal(busy_scene().set("time.end", 7).set("name", "x").set("initial.hinges.axle.position", "[0.2]")), "");
+}
+
+TEST(HostedSimulation, takes_no_numbers_that_are_not_a_whole_snapshot) {
+  Simulation simulation(busy_scene());
+  simulation.step(0.1);
+  const std::vector<double> good = simulation.snapshot().numbers();
+  EXPECT_EQ(Snapshot::of_numbers(good).time(), 0.1);
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    for (const double wrong : {std::nan(""), good[i] == 0 ? 1.0 : -good[i]}) {
+      std::vector<double> numbers = good;
+      numbers[i] = wrong;
+      EXPECT_THROW(static_cast<void>(Snapshot::of_numbers(numbers)), std::invalid_argument) << i;
+    }
+  }
+  EXPECT_THROW(static_cast<void>(Snapshot::of_numbers({good.data(), good.size() - 1})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(Snapshot::of_numbers({})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(Snapshot().time()), std::invalid_argument);
+}
+
 TEST(HostedSimulation, gives_the_same_bits_on_many_threads) {
   const Scene scene = busy_scene();
   Simulation alone(scene);
