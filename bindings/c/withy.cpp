@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <initializer_list>
+#include <map>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "withy/core/plugin/registry.hpp"
@@ -31,14 +35,64 @@ enum class Kind : std::uint64_t {
   equations
 };
 
+/// Why the last call of each thread with one handle failed.
+class ErrorsOfThreads {
+ public:
+  /// That of the calling thread; null where none of its calls has failed yet. It stays where it is.
+  std::string* find() noexcept {
+    if (!any_.load(std::memory_order_relaxed)) return nullptr;  // a thread sees at least what it has set itself
+    const std::lock_guard lock(mutex_);
+    const auto found = texts_.find(std::this_thread::get_id());
+    return found == texts_.end() ? nullptr : &found->second;
+  }
+  /// \throws std::bad_alloc
+  std::string& make() {
+    const std::lock_guard lock(mutex_);
+    any_.store(true, std::memory_order_relaxed);
+    return texts_[std::this_thread::get_id()];
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::thread::id, std::string> texts_;
+  std::atomic<bool> any_ = false;
+};
+
 /// What every handle begins with.
-struct Handle {
+class Handle {
+ public:
   explicit Handle(Kind k) : kind(k) {}
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   virtual ~Handle() { *const_cast<volatile Kind*>(&kind) = Kind::none; }  // kept, though nothing reads it
+
+  [[nodiscard]] const char* error() const noexcept {
+    const std::string* text = is_shared() ? errors_.find() : &error_;
+    return text == nullptr ? "" : text->c_str();
+  }
+  void forget_error() const noexcept {
+    std::string* text = is_shared() ? errors_.find() : &error_;
+    if (text != nullptr && !text->empty()) text->clear();
+  }
+  /// Where there is no memory for it there is none.
+  void tell(std::initializer_list<const char*> why) const noexcept {
+    forget_error();
+    try {
+      std::string& text = is_shared() ? errors_.make() : error_;
+      for (const char* part : why) text += part;
+    } catch (...) {
+      forget_error();
+    }
+  }
+
   Kind kind;
-  mutable std::string error;
+
+ private:
+  /// Threads use it at the same time; another handle goes from one thread to the next, and its error with it.
+  [[nodiscard]] bool is_shared() const noexcept { return kind == Kind::library || kind == Kind::scene; }
+
+  mutable std::string error_;
+  mutable ErrorsOfThreads errors_;
 };
 
 template <class T, Kind which>
@@ -99,20 +153,10 @@ const char* name_of(Kind kind) {
   return number < names.size() ? names[number] : nullptr;
 }
 
-/// Sets the handle's error; where there is no memory for it there is none.
-void tell(const Handle& handle, std::initializer_list<const char*> why) noexcept {
-  handle.error.clear();
-  try {
-    for (const char* part : why) handle.error += part;
-  } catch (...) {
-    handle.error.clear();
-  }
-}
-
 /// The handle of another kind says so, where it is one.
 void refuse(const Handle* handle, Kind wanted) noexcept {
   if (handle != nullptr && name_of(handle->kind) != nullptr)
-    tell(*handle, {"got a handle of another kind, '", name_of(handle->kind), "'; need '", name_of(wanted), "'"});
+    handle->tell({"got a handle of another kind, '", name_of(handle->kind), "'; need '", name_of(wanted), "'"});
 }
 
 /// Does what a function is for; whatever it throws becomes a status and the handle's error.
@@ -123,11 +167,11 @@ withy_status guarded(H* handle, Act&& act) noexcept {
     return WITHY_BAD_USE;
   }
   const auto fail = [&](withy_status status, const char* why) {
-    tell(*handle, {why});
+    handle->tell({why});
     return status;
   };
   try {
-    if (!handle->error.empty()) handle->error.clear();
+    handle->forget_error();
     act();
     return WITHY_OK;
   } catch (const host::SimulationStopped& e) {
@@ -169,7 +213,7 @@ withy_port port_at(const std::vector<host::Port>& ports, std::size_t index) {
 const char* withy_version(void) { return WITHY_VERSION; }
 
 const char* withy_error(const void* handle) {
-  return handle == nullptr ? "the handle is null" : static_cast<const Handle*>(handle)->error.c_str();
+  return handle == nullptr ? "the handle is null" : static_cast<const Handle*>(handle)->error();
 }
 
 void withy_free(void* handle) { delete static_cast<Handle*>(handle); }

@@ -5,7 +5,8 @@
  * that the function's text does not name, and withy_error() of the handle that was passed first says why in a sentence.
  * Arrays belong to the caller, who gives their sizes; texts belong to the handle and last until its next call that is
  * not const, or its end. No function exits, prints, or throws. A library and a scene that nobody changes may be shared
- * by threads; other handles are of one thread at a time. All numbers are in SI units.
+ * by threads: each of these has errors of its own there, which last until its own next call. Other handles are of one
+ * thread at a time. All numbers are in SI units.
  */
 #ifndef WITHY_H
 #define WITHY_H
@@ -56,7 +57,8 @@ typedef struct withy_library_options {
 
 /** "0.2.0". */
 WITHY_API const char* withy_version(void);
-/** Why the last call with this handle failed; empty where it did not. Never null. */
+/** Why the last call with this handle failed, of a library or a scene the last one of the calling thread; empty where
+ * it did not. Never null. */
 WITHY_API const char* withy_error(const void* handle);
 /** Ends any handle; null is allowed. Others made from it live on. */
 WITHY_API void withy_free(void* handle);
