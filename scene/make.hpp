@@ -6,7 +6,9 @@
 
 #include <memory>
 #include <new>
+#include <type_traits>
 
+#include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/floating_point.hpp"
 #include "withy/scene/check.hpp"
@@ -52,6 +54,11 @@ std::unique_ptr<Interface> make_object(const Plugin<Interface>& plugin, const Va
   arithmetic.check(fmt::format("{} '{}' of {}", kind_name<Interface>(), plugin.id, plugin.origin));
   if (checker.diagnostics().errors().size() != before) return nullptr;
   if (object == nullptr) blame("cannot be made and does not say why");
+  if constexpr (std::is_same_v<Interface, Hinge>)
+    if (const std::string fault = object == nullptr ? "" : find_fault(*object); !fault.empty()) {
+      blame("made a motion that cannot be: " + fault);
+      return nullptr;
+    }
   return object;
 }
 

@@ -9,6 +9,7 @@
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/hosted_motion.hpp"
+#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/floating_point.hpp"
 #include "withy/scene/asked_outputs.hpp"
@@ -256,7 +257,8 @@ class SceneBuilder {
     }
     add_parts<Sensor>("outputs", grammar::sensor_members(), tree.model != nullptr,
                       [&](const std::string& name, const Value&, const std::shared_ptr<const Sensor>& sensor) {
-                        auto bound = sensor->bind(*tree.model, scene_.outputs);
+                        auto bound = plugin_call("the sensor cannot be bound",
+                                                 [&] { return sensor->bind(*tree.model, scene_.outputs); });
                         if (bound == nullptr)
                           throw std::invalid_argument("the sensor cannot be bound and does not say why");
                         scene_.outputs.push_back({name, std::move(bound)});

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/plugin_call.hpp"
 #include "withy/scene/constraints.hpp"
 #include "withy/scene/state.hpp"
 
@@ -35,11 +37,40 @@ void check_driven(const Model& model, const Scene& scene, const Checker& checker
   }
 }
 
+/// Where loads have the simulation begin; reports those that leave no number there.
+void begin_loads(const Model& model, const Checker& checker, State& state) {
+  for (const LoadNode& load : model.loads()) {
+    try {
+      plugin_call("load '" + load.name + "' does not begin", [&] { load.load->begin(state); });
+    } catch (const std::invalid_argument& e) {
+      checker.key_error("/loads/" + load.name, e.what());
+      continue;
+    }
+    for (std::size_t i = 0; i < model.layout().positions + model.layout().speeds; ++i) {
+      if (std::isfinite(state.y[i])) continue;
+      checker.key_error("/loads/" + load.name,
+                        fmt::format("load '{}' has the simulation begin where a {} is {}", load.name,
+                                    i < model.layout().positions ? "coordinate" : "rate", state.y[i]));
+      state.y[i] = 0;
+    }
+  }
+}
+
+/// Reports the states of loads' own that begin where there is no number.
+void check_continuous(const Model& model, const Checker& checker, const State& state) {
+  for (const LoadSlot& slot : model.layout().continuous_slots)
+    for (std::size_t i = 0; i < slot.count; ++i)
+      if (const double number = state.y[slot.first + i]; !std::isfinite(number))
+        checker.key_error(
+            "/loads/" + model.loads()[slot.load].name,
+            fmt::format("its state '{}' begins at {}", model.loads()[slot.load].continuous->name(i), number));
+}
+
 }  // namespace
 
 void set_start(const Model& model, const Document& document, const Checker& checker, Scene& scene) {
   scene.initial = model.reference_state();
-  for (const LoadNode& l : model.loads()) l.load->begin(scene.initial);
+  begin_loads(model, checker, scene.initial);
   if (const EventBook book(model); book.any()) book.begin(scene.initial.y);
   const Value* initial = document.root.find("initial");
   const Value stated = initial != nullptr ? without_guess(*initial, model, checker, scene.initial) : Value();
@@ -68,6 +99,7 @@ void set_start(const Model& model, const Document& document, const Checker& chec
   const Value* loads = given == nullptr ? nullptr : given->find("loads");
   if (loads != nullptr && checker.diagnostics().ok())
     set_state(Value::map({{"loads", *loads}}, given->place()), model, checker, scene.initial);
+  if (checker.diagnostics().ok()) check_continuous(model, checker, scene.initial);
 }
 
 }  // namespace withy

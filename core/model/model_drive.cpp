@@ -5,8 +5,23 @@
 #include <utility>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/model/plugin_call.hpp"
 
 namespace withy {
+
+namespace {
+
+/// Of a load or a motion.
+template <class Part>
+void check_times(const std::string& who, const Part& part) {
+  const bool sound = plugin_call(who + " does not say when it jumps or ends", [&] {
+    const std::vector<double> jumps = part.discontinuities();
+    return !std::isnan(part.end()) && std::none_of(jumps.begin(), jumps.end(), [](double t) { return std::isnan(t); });
+  });
+  if (!sound) throw std::invalid_argument(who + " jumps or ends at a time that is no number");
+}
+
+}  // namespace
 
 bool Model::driven(std::size_t hinge) const { return driven_[hinge]; }
 
@@ -43,6 +58,7 @@ void Model::add_motion(std::string name, const std::string& hinge_name, std::sha
         std::find_if(motions_.begin(), motions_.end(), [&](const MotionNode& m) { return m.hinge == index; });
     throw std::invalid_argument("hinge '" + hinge_name + "' is driven by motion '" + other->name + "' already");
   }
+  check_times("motion '" + name + "'", *motion);
   driven_[static_cast<std::size_t>(index)] = true;
   layout_.prescribed += slot.speeds;
   motions_.push_back({std::move(name), index, std::move(motion)});
@@ -92,11 +108,11 @@ void Model::begin_continuous(State& state) const {
 }
 
 void Model::add_load(std::string name, const Load& load) {
-  std::shared_ptr<const BoundLoad> bound = load.bind(*this);
-  if (bound == nullptr) throw std::invalid_argument("load '" + name + "' cannot be bound and does not say why");
-  const std::vector<double> jumps = bound->discontinuities();
-  if (std::isnan(bound->end()) || std::any_of(jumps.begin(), jumps.end(), [](double t) { return std::isnan(t); }))
-    throw std::invalid_argument("load '" + name + "' jumps or ends at a time that is no number");
+  const std::string who = "load '" + name + "'";
+  const std::shared_ptr<const BoundLoad> bound =
+      plugin_call(who + " cannot be bound", [&]() -> std::shared_ptr<const BoundLoad> { return load.bind(*this); });
+  if (bound == nullptr) throw std::invalid_argument(who + " cannot be bound and does not say why");
+  check_times(who, *bound);
   load_scratch_ = std::max(load_scratch_, bound->scratch());
   const std::size_t index = loads_.size();
   LoadNode node{std::move(name), bound};

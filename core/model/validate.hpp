@@ -1,9 +1,10 @@
 /// \file
-/// Checks of what a body claims to be, whoever wrote it: done once, when a model is built.
+/// Checks of what a body or a hinge claims to be, whoever wrote it: done once, when it is made or a model is built.
 #pragma once
 
 #include <string>
 
+#include "withy/core/plugin/hinge.hpp"
 #include "withy/core/shape/modal_shape.hpp"
 
 namespace withy {
@@ -15,5 +16,9 @@ namespace withy {
 std::string find_fault(const ModalShape& shape);
 /// The same of the motion of one point of a body with `modes` modes.
 std::string find_fault(const PointExpansion& point, Eigen::Index modes);
+/// What is wrong with a hinge near its reference, or empty: numbers of coordinates and rates that none has, or another
+/// motion than the kernel's that it says it is; H that is not the derivative of its pose, a bias that is not that of H.
+/// These are compared with differences over steps from 1e-2 to 1e-5, to 1e-4 of their size; one that agrees will do.
+std::string find_fault(const Hinge& hinge);
 
 }  // namespace withy

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/simulation/same_instant.hpp"
 
@@ -22,6 +23,11 @@ Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::
       times_(stepper_->state().time, options.output, options.end),
       end_(options.end),
       sample_(stepper_->state()) {
+  if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr &&
+      dynamic_cast<const ClosingStepper*>(stepper_.get()) == nullptr)
+    throw std::invalid_argument(
+        "the integrator cannot run closed loops (constraints): it does not close them at the end of each step, so that "
+        "they would come apart. Use dopri5, dop853, rk4, rk4-adaptive, gauss or radau");
   clocks_.go_on_after(state().time);
   jumps_.insert(jumps_.end(), options.hand_overs.begin(), options.hand_overs.end());
   std::sort(jumps_.begin(), jumps_.end());

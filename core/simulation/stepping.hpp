@@ -76,6 +76,7 @@ class Stepping {
  public:
   /// \param stepper begun at a state whose discrete states are set (see `begun`)
   /// The model, its equations and the events must outlive the object.
+  /// \throws std::invalid_argument where the equations are of closed loops and the stepper is no ClosingStepper.
   Stepping(const Model& model, const EquationsOfMotion& equations, std::unique_ptr<Stepper> stepper,
            const SteppingOptions& options);
   /// Steps to the end. Steps land on discontinuities of loads and motions, on the instants of discrete states and on

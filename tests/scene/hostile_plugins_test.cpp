@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 
 #include <cfenv>
+#include <cmath>
 #include <limits>
 
 #include "scene_fixture.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/body.hpp"
+#include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
 
 namespace withy::test {
@@ -37,6 +39,75 @@ class Unbound final : public Load {
   std::unique_ptr<BoundLoad> bind(const Model&) const override { return nullptr; }
 };
 
+enum class Deed { throws_number, throws_at_times, begins_nowhere };
+
+/// A load that does nothing, but for one deed.
+class Misbehaving final : public Load {
+ public:
+  explicit Misbehaving(Deed deed) : deed_(deed) {}
+  std::unique_ptr<BoundLoad> bind(const Model&) const override {
+    if (deed_ == Deed::throws_number) throw 42;
+    return std::make_unique<Bound>(deed_);
+  }
+
+ private:
+  class Bound final : public BoundLoad {
+   public:
+    explicit Bound(Deed deed) : deed_(deed) {}
+    std::size_t scratch() const override { return 0; }
+    void add(double, std::span<const double>, std::span<const double>, std::span<double>,
+             std::span<double>) const noexcept override {}
+    std::vector<double> discontinuities() const override {
+      if (deed_ == Deed::throws_at_times) throw std::runtime_error("no times");
+      return {};
+    }
+    double end() const override { return 0; }
+    void begin(State& state) const override {
+      if (deed_ == Deed::begins_nowhere) state.y[4] = std::numeric_limits<double>::quiet_NaN();
+    }
+
+   private:
+    Deed deed_;
+  };
+  Deed deed_;
+};
+
+template <Deed deed>
+std::unique_ptr<Load> misbehaving(const Value&, const MakeContext&) {
+  return std::make_unique<Misbehaving>(deed);
+}
+
+/// A slider on the curve y = sin x; told faults are in its H, its bias or its kernel.
+class OnSine final : public Hinge {
+ public:
+  explicit OnSine(std::string fault) : fault_(std::move(fault)) {}
+  std::size_t coordinates() const override { return 1; }
+  std::size_t speeds() const override { return 1; }
+  void reference(std::span<double> x) const noexcept override { x[0] = 0; }
+  void motion(std::span<const double> x, std::span<const double> rates, HingeMotion& out) const noexcept override {
+    out.pose.R.setIdentity();
+    out.pose.p = Vector3(x[0], std::sin(x[0]), 0);
+    out.H.setZero(6, 1);
+    out.H(3, 0) = 1;
+    out.H(4, 0) = (fault_ == "H" ? 1.01 : 1) * std::cos(x[0]);
+    out.bias.setZero();
+    if (fault_ != "bias") out.bias[4] = -std::sin(x[0]) * rates[0] * rates[0];
+  }
+  void derivatives(std::span<const double>, std::span<const double> rates,
+                   std::span<double> x_dot) const noexcept override {
+    x_dot[0] = rates[0];
+  }
+  void normalize(std::span<double>) const noexcept override {}
+  std::optional<HingeKernel> kernel() const override {
+    if (fault_ == "kernel") return HingeKernel{HingeKernel::Kind::prismatic, Vector3::UnitX()};
+    if (fault_ == "size") return HingeKernel{HingeKernel::Kind::free, Vector3::UnitX()};
+    return {};
+  }
+
+ private:
+  std::string fault_;
+};
+
 class HostilePlugins : public SceneTest {
  protected:
   HostilePlugins() {
@@ -63,6 +134,22 @@ class HostilePlugins : public SceneTest {
       return std::make_unique<Unbound>();
     };
     e.add(std::move(unbound));
+    const auto add_load = [&](const char* id, auto make) {
+      Plugin<Load> load;
+      load.id = id;
+      load.make = make;
+      e.add(std::move(load));
+    };
+    add_load("throws-number", &misbehaving<Deed::throws_number>);
+    add_load("throws-at-times", &misbehaving<Deed::throws_at_times>);
+    add_load("begins-nowhere", &misbehaving<Deed::begins_nowhere>);
+    Plugin<Hinge> sine;
+    sine.id = "sine";
+    sine.parameters = {text("fault", "what is wrong with it").otherwise("nothing")};
+    sine.make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Hinge> {
+      return std::make_unique<OnSine>(p.text_at("fault"));
+    };
+    e.add(std::move(sine));
     add("refused", [](const Value&, const MakeContext&) -> Made { throw PluginError("a refused library"); });
     add("nan", [](const Value&, const MakeContext&) -> Made {
       return std::make_unique<Lump>(std::numeric_limits<double>::quiet_NaN(), true);
@@ -113,6 +200,36 @@ TEST_F(HostilePlugins, ThatChangeTheArithmeticAreRefusedAndItIsRestored) {
 TEST_F(HostilePlugins, ThatBindNothingAreReported) {
   EXPECT_EQ(problems(with("type: lump") + "loads:\n  l: {type: unbound}\n", registry),
             "s.yaml:8:3: /loads/l: load 'l' cannot be bound and does not say why");
+}
+
+TEST_F(HostilePlugins, WhoseLoadsThrowWhileTheyAreBoundAreReportedAtTheLoad) {
+  const auto load = [&](const std::string& type) {
+    return problems(with("type: lump") + "loads:\n  l: {type: " + type + "}\n", registry);
+  };
+  EXPECT_EQ(load("throws-number"),
+            "s.yaml:8:3: /loads/l: load 'l' cannot be bound: it throws what is no exception of C++");
+  EXPECT_EQ(load("throws-at-times"), "s.yaml:8:3: /loads/l: load 'l' does not say when it jumps or ends: no times");
+}
+
+TEST_F(HostilePlugins, WhoseLoadsBeginWhereThereIsNoNumberAreReportedAtTheLoad) {
+  EXPECT_EQ(problems(with("type: lump") + "loads:\n  l: {type: begins-nowhere}\n", registry),
+            "s.yaml:8:3: /loads/l: load 'l' has the simulation begin where a coordinate is nan");
+}
+
+TEST_F(HostilePlugins, WhoseHingesDoNotMoveAsTheySayAreReported) {
+  const auto hinge = [&](const std::string& fault) {
+    return problems(
+        "format: withy/1\ntime: {end: 1}\nbodies: {b: {type: lump}}\nhinges:\n  h: {type: sine, parent: "
+        "world, child: b, fault: " +
+            fault + "}\n",
+        registry);
+  };
+  const std::string made = "s.yaml:5:3: /hinges/h: hinge 'sine' made a motion that cannot be: ";
+  EXPECT_EQ(hinge("nothing"), "");
+  EXPECT_THAT(hinge("H"), testing::StartsWith(made + "column 1 of H is (0 0 0 1 1.01 0) in the axes of M"));
+  EXPECT_THAT(hinge("bias"), testing::StartsWith(made + "the bias is (0 0 0 0 0 0) in the axes of M"));
+  EXPECT_EQ(hinge("kernel"), made + "it does not move as the kernel that it says it is");
+  EXPECT_EQ(hinge("size"), made + "it has 1 coordinates and 1 rates, the kernel that it says it is has 7 and 6");
 }
 
 TEST_F(HostilePlugins, ThatMakeImpossibleBodiesAreReported) {
