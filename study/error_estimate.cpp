@@ -72,7 +72,6 @@ class PairedRuns {
         first_(&used),
         track_(used) {
     options_.end = summary.final.time;
-    options_.output = scene.output;
     options_.interrupted = interrupted;
   }
   PairedRunOptions& options() { return options_; }
@@ -210,8 +209,11 @@ std::optional<ErrorEstimate> of_strict(const Scene& scene, const EquationsOfMoti
   return estimate;
 }
 
-EstimateOutcome at_any_price(PairedRuns& pair, const RunSummary& summary, Registry& registry) {
+/// \param span time that the run took [s]: what a scene writes to its results is its own affair
+EstimateOutcome at_any_price(PairedRuns& pair, double span, const RunSummary& summary, Registry& registry) {
   const PairedTolerances t = paired_tolerances(summary);
+  pair.options().at_steps = true;
+  pair.options().output = span / most_readings;
   pair.options().most_evaluations = summary.steps.evaluations;
   ErrorEstimate estimate =
       pair.with(*make_integrator(registry, "dopri5", Value::map({{"rtol", Value(t.rtol)}, {"atol", Value(t.atol)}})));
@@ -228,8 +230,8 @@ EstimateOutcome estimate_error(const Scene& scene, const EquationsOfMotion& used
                                const RunSummary& summary, Registry& registry, Price price,
                                const std::function<bool()>& interrupted) {
   PairedRuns pair(scene, used, beyond, summary, interrupted);
-  if (price == Price::any) return at_any_price(pair, summary, registry);
   const double span = summary.final.time - scene.initial.time;
+  if (price == Price::any) return at_any_price(pair, span, summary, registry);
   const double paid = share_of_run * static_cast<double>(summary.steps.evaluations) / cost_of_a_pair(*scene.model);
   const auto allowed = std::max(static_cast<std::size_t>(paid), least_evaluations);
   PairedRunOptions& options = pair.options();

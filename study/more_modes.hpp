@@ -14,7 +14,7 @@ namespace withy::study {
 /// What one mode more of every family of every body changes in a run. The series of modes goes on from there: it is no
 /// bound of the error, and where it shrinks slowly the error is several times as great.
 struct MoreModes {
-  NamedDistances distances;     ///< greatest at the outputs that both have, up to `until`
+  NamedDistances distances;     ///< greatest at 500 times, or of these at those that both have, up to `until`
   double end = 0;               ///< time the run reached [s]
   std::size_t evaluations = 0;  ///< of both
   double cpu_seconds = 0;
@@ -29,10 +29,9 @@ struct MoreModesOutcome {
 /// Whether a body has a number of modes, that can be greater by one.
 bool can_be_refined(const Scene& scene);
 
-/// Runs the scene as it is and with one mode more of each, with the scene's own integrator, and compares them at its
-/// outputs: the cost of the run and somewhat more than that. Modes that are new begin at rest.
-/// \param until what the run is compared up to [s]
-/// \throws PluginError
+/// Runs the scene as it is and with one mode more of each, with the scene's own integrator, and compares them at 500
+/// times, whatever outputs the scene has: the cost of the run and somewhat more than that. Modes that are new begin at
+/// rest. \param until what the run is compared up to [s] \throws PluginError
 MoreModesOutcome with_one_mode_more(const Prepared& prepared, Registry& registry, double until,
                                     const std::function<bool()>& interrupted);
 

@@ -142,9 +142,9 @@ Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserve
   const EquationsOfMotion& equations = *model.equations;
   const State start = begun(model.model(), equations, model.scene.initial);
   EventActions actions(model.model(), equations, {});
-  Stepping loop(
-      model.model(), equations, integrator.start(equations, start),
-      {.end = end_of_run(model.scene), .output = model.scene.output, .events = actions.watched(), .actions = &actions});
+  const double interval = observer.interval > 0 ? observer.interval : model.scene.output;
+  Stepping loop(model.model(), equations, integrator.start(equations, start),
+                {.end = end_of_run(model.scene), .output = interval, .events = actions.watched(), .actions = &actions});
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();
   Watch watch(model, observer, LoopWatch(equations, start),

@@ -47,6 +47,7 @@ struct WalkObserver {
   std::function<bool(const State&)> output;  ///< gets the state at each output and says whether to go on
   std::function<bool(const Walk&)> afford;   ///< at the same times: whether the cost so far may be spent
   std::function<bool()> interrupted;
+  double interval = 0;  ///< of outputs [s]; 0: the scene's
 };
 
 /// Steps from the scene's initial state to its end as a run does, without looking for events or measuring on the way.

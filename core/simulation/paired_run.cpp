@@ -205,6 +205,7 @@ PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const E
   PairObserver observer(pair, {Renewal(model, first), Renewal(model, second)}, options, initial, output);
   const double never = 2 * (std::abs(initial.time) + std::abs(options.end)) + 1;
   Stepping loop(model, pair, integrator.start(pair, both), {options.end, options.at_steps ? never : options.output});
+  observer.output(both);
   loop.run(observer);
   if (loop.state().time > observer.emitted()) observer.output(loop.state());
   return {loop.state().time, loop.stepper().statistics().evaluations, thread_cpu_seconds() - began};

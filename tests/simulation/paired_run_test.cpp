@@ -88,6 +88,30 @@ TEST(PairedRun, errors_of_random_scenes_are_estimated_within_a_factor_of_three) 
   EXPECT_GE(good, 0.95 * all) << good << " of " << all << ", worst " << worst;
 }
 
+// Equations that read the same state differently do so from the first one on.
+TEST(PairedRun, gives_both_states_at_the_start_and_at_the_end) {
+  RandomScene random(1, {});
+  Made m(random.text(), "ruthless");
+  const auto beyond = m.in("quadratic");
+  for (const bool at_steps : {false, true}) {
+    PairedRunOptions options;
+    options.end = 0.05;
+    options.output = 1;
+    options.at_steps = at_steps;
+    std::vector<State> first, second;
+    run_paired(*m.scene.model, *m.equations, *beyond, *m.scene.integrator, m.scene.initial, options,
+               [&](const State& a, const State& b) {
+                 first.push_back(a);
+                 second.push_back(b);
+               });
+    ASSERT_EQ(first.size(), 2U) << at_steps;
+    EXPECT_EQ(first[0].time, m.scene.initial.time);
+    EXPECT_EQ(first[0].y, second[0].y);
+    EXPECT_EQ(first[0].y, m.scene.initial.y);
+    EXPECT_EQ(first[1].time, options.end);
+  }
+}
+
 TEST(PairedRun, ends_where_its_evaluations_are_spent) {
   RandomScene random(1, {});
   Made m(random.text(), "ruthless");

@@ -115,6 +115,58 @@ TEST(Estimate, is_a_bound_where_its_run_leaves_the_run_on_the_way) {
   expect_near(*cheap.estimate, *dear.estimate, 1.5);
 }
 
+// Efforts and deflections of fast vibrations: at outputs ten seconds apart none of them is seen.
+TEST(Estimate, does_not_depend_on_what_a_scene_writes_to_its_results) {
+  const auto at_any_price = [](double output) {
+    SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/driven-arm.yaml");
+    values.set("time.output", Value(output), "the test").choose_formulation("linear", "the test");
+    RunSettings settings;
+    settings.estimate = Estimate::always;
+    return run(prepare(values, plugins()), plugins(), settings).certificate;
+  };
+  const Certificate often = at_any_price(0.01), rarely = at_any_price(10);
+  ASSERT_TRUE(often.estimate && rarely.estimate && often.more_modes.more && rarely.more_modes.more);
+  EXPECT_GT(often.estimate->distances.deflections.at("link1.tip.deflection"), 5e-3);
+  EXPECT_GT(often.more_modes.more->distances.deflections.at("link2.tip.deflection"), 5e-3);
+  EXPECT_EQ(often.estimate->distances.deflections, rarely.estimate->distances.deflections);
+  EXPECT_EQ(often.estimate->distances.tips, rarely.estimate->distances.tips);
+  EXPECT_EQ(often.estimate->distances.hinges, rarely.estimate->distances.hinges);
+  EXPECT_EQ(often.more_modes.more->distances.deflections, rarely.more_modes.more->distances.deflections);
+}
+
+// The tip of a beam with its first mode at 0.06, which `linear` knows no foreshortening of: all the error is at the
+// start, for the beam comes to rest.
+TEST(Estimate, holds_what_two_formulations_differ_by_at_the_start) {
+  const Prepared p = prepare(SceneValues::parse(R"(
+format: withy/1
+formulation: linear
+bodies:
+  beam: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 3, modes: 2}, damping_ratio: 1}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: beam}
+motions:
+  turn: {hinge: axle, type: quintic, to: 0.2, duration: 4}
+initial: {bodies: {beam: {modes: [0.06, 0]}}}
+time: {end: 8, output: 0.5}
+integrator: {name: dopri5, rtol: 1e-9, atol: 1e-12}
+)",
+                                                "bent"),
+                             plugins());
+  const Beyond beyond = *next_model_up(p, plugins());
+  const int tip = p.model().bodies()[0].frame("tip");
+  const std::vector<double>& y = p.scene.initial.y;
+  const double shorter = -beyond.equations->deflection(y, 0, tip)[0];
+  EXPECT_GT(shorter, 8e-3);
+  ASSERT_EQ(p.equations->deflection(y, 0, tip)[0], 0);
+  for (const Estimate price : {Estimate::automatic, Estimate::always}) {
+    RunSettings settings;
+    settings.estimate = price;
+    const Certificate c = run(p, plugins(), settings).certificate;
+    ASSERT_TRUE(c.estimate);
+    EXPECT_NEAR(c.estimate->distances.deflections.at("beam.tip.deflection"), shorter, 1e-3 * shorter);
+  }
+}
+
 // Cubics are met exactly, at both ends and between them; beyond there is nothing.
 TEST(CoarseTrack, goes_through_its_states_as_a_cubic) {
   const Prepared p = Estimated::of("two-link-slew", "quadratic");

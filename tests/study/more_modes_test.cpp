@@ -47,7 +47,12 @@ TEST(MoreModesOfARun, ChangeItByWhatTwoRunsByThemselvesDiffer) {
   const CertifiedRun run = certified(slew_with(1));
   const MoreModesOutcome& outcome = run.certificate.more_modes;
   ASSERT_TRUE(outcome.more) << outcome.why_not;
-  const std::vector<Vector3> one = payload_path(slew_with(1)), two = payload_path(slew_with(2));
+  // They are compared at 500 times, whatever a scene writes to its results.
+  const auto path = [](int modes) {
+    SceneValues values = slew_with(modes);
+    return payload_path(values.set("time.output", Value(0.2 / 500), "the test"));
+  };
+  const std::vector<Vector3> one = path(1), two = path(2);
   ASSERT_EQ(one.size(), two.size());
   double apart = 0;
   for (std::size_t i = 0; i < one.size(); ++i) apart = std::max(apart, (one[i] - two[i]).norm());
