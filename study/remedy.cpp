@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "withy/core/simulation/stop.hpp"
@@ -59,6 +61,23 @@ std::string motion_remedy(const Prepared& prepared, const NonfiniteMotion& motio
       placed_name(prepared, "motions", motion.name), 0.99 * motion.time);
 }
 
+/// Whether a run of steps that nobody controls ended where steps are beyond what the integrator is stable to; then also
+/// what has to be said of them, empty where the run's message does.
+std::optional<std::string> unstable_steps(const Prepared& prepared, const RunSummary& summary) {
+  const Scene& scene = prepared.scene;
+  if (scene.source.at("integrator").find("rtol") != nullptr || summary.steps.accepted == 0) return {};
+  const double step = (summary.reached - scene.initial.time) / static_cast<double>(summary.steps.accepted);
+  if (!steps_too_long(summary, *scene.integrator, step).empty()) return std::string();
+  if (summary.final.y.size() != prepared.equations->size()) return {};
+  // What has grown already is no reason for its growth.
+  RunSummary trusted = summary;
+  std::erase_if(trusted.validity.along, [&](const State& s) { return s.time > summary.final.time; });
+  RunOptions options;
+  watch_poles(prepared, options);
+  const std::string text = options.too_fast(trusted, step);
+  return text.empty() ? std::nullopt : std::optional(" " + text);
+}
+
 /// Of what is too fast for the steps allowed.
 std::string stiff_remedy(const Prepared& prepared, const RunSummary& summary) {
   if (summary.final.y.size() == prepared.equations->size() && !too_stiff(prepared, summary.final))
@@ -73,6 +92,11 @@ std::string stiff_remedy(const Prepared& prepared, const RunSummary& summary) {
          "above: less damping or stiffness, or the inertia that it lacks (a motor has a rotor).";
 }
 
+const char* const shorter_steps =
+    " What to do: take shorter steps (a smaller 'step', or 'rtol' or 'max_step' of an integrator that controls its "
+    "error), or one "
+    "that no vibration limits, as radau.";
+
 }  // namespace
 
 std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
@@ -86,9 +110,7 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
     case RunStatus::too_stiff:
       return stiff_remedy(prepared, summary);
     case RunStatus::inaccurate:
-      return " What to do: take shorter steps (a smaller 'step', or 'rtol' or 'max_step' of an integrator that "
-             "controls its error), "
-             "or one that no vibration limits, as radau.";
+      return shorter_steps;
     default:
       break;
   }
@@ -97,6 +119,9 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
       return motion_remedy(prepared, *motion);
   if (summary.status == RunStatus::diverged && summary.final.y.size() == prepared.equations->size())
     if (std::string text = load_remedy(prepared, summary); !text.empty()) return text;
+  // Before any model: what grows in such steps tells nothing of it.
+  if (summary.status == RunStatus::diverged)
+    if (const std::optional<std::string> steps = unstable_steps(prepared, summary)) return *steps + shorter_steps;
   if (bends && leaves_something_out(terms))
     return " What to do: run it with --formulation quadratic, which leaves out less; if that ends the same way it is "
            "the model and not the formulation.";

@@ -252,6 +252,55 @@ loads: {spring: {type: hinge-spring, hinge: joint, stiffness: )" +
   }
 }
 
+/// A boom that is too stiff for steps of 1 ms, which `ruthless` leaves much out of; and one whose servo is too quick
+/// for them, which no vibration tells.
+TEST(Causes, StepsThatAreTooLongComeBeforeTheModel) {
+  const auto of = [](const std::string& rest, const std::string& integrator) {
+    SceneValues values = SceneValues::parse(R"(format: withy/1
+time: {end: 1}
+bodies:
+  hub: {type: rigid, mass: 0.1, inertia: [1e-3, 1e-3, 1e-3, 0, 0, 0]}
+  boom: {type: beam, length: 1, mass_per_length: 1, )" +
+                                                rest,
+                                            "planted.yaml");
+    values.set_text("integrator=" + integrator, "the test");
+    return run_of(values.choose_formulation("ruthless", "the test"));
+  };
+  const std::string fixed = "{name: rk4, step: 1e-3}";
+  const std::string stiff = R"(bending_y: {stiffness: 2000, modes: 3}}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub, child: boom}
+loads: {push: {type: hinge-effort, hinge: axle, value: 1}}
+)";
+  const std::string quick = R"(bending_y: {stiffness: 10, modes: 1}}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  joint: {type: revolute, axis: [0, 0, 1], parent: hub, child: boom}
+loads: {servo: {type: pid, hinge: axle, proportional: 100, derivative: 20, reference: 0.1}}
+)";
+  for (const std::string& scene : {stiff, quick}) {
+    const RunSummary s = of(scene, fixed);
+    EXPECT_EQ(s.status, RunStatus::diverged) << s.message;
+    EXPECT_THAT(s.message, HasSubstr("s are too long for the integrator"));
+    EXPECT_THAT(s.message, HasSubstr("What to do: take shorter steps"));
+    EXPECT_THAT(s.message, Not(HasSubstr("--formulation")));
+    // What it advises helps.
+    EXPECT_EQ(of(scene, "{name: rk4, step: 5e-5}").status, RunStatus::completed);
+    EXPECT_EQ(of(scene, "{name: radau, rtol: 1e-6, atol: 1e-9}").status, RunStatus::completed);
+  }
+}
+
+/// Steps of a millisecond are short for a blade that its formulation lets fly apart.
+TEST(Causes, StepsThatAreShortEnoughAreNoCause) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml");
+  values.set_text("integrator={name: rk4, step: 1e-3}", "the test");
+  const RunSummary s = run_of(values.choose_formulation("inconsistent", "the test"));
+  EXPECT_EQ(s.status, RunStatus::diverged);
+  EXPECT_THAT(s.message, Not(HasSubstr("too long")));
+  EXPECT_THAT(s.message, HasSubstr("What to do: run it with --formulation quadratic"));
+}
+
 TEST(Causes, AMassMatrixThatTurnsIndefinite) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
   values.set("loads.slew.time_scale", Value(1.2), "the test");
