@@ -44,10 +44,19 @@ Json body_json(const BodyValidity& b, const Certificate& certificate, const RunS
   return j;
 }
 
-Json drifts_json(const study::Drifts& d, bool momenta) {
-  Json j{{"energy", d.energy}};
-  if (momenta) j.update({{"linear", d.linear}, {"angular", d.angular}});
+/// Parts of drifts; null of those that are not told apart.
+Json parts_json(const study::DriftShares& shares, double study::DriftShare::*part, bool momenta) {
+  const auto of = [&](const std::optional<study::DriftShare>& share) { return share ? Json(*share.*part) : Json(); };
+  Json j{{"energy", of(shares.energy)}};
+  if (momenta) j.update({{"linear", of(shares.linear)}, {"angular", of(shares.angular)}});
   return j;
+}
+
+Json drift_by_json(const study::Certificate& c) {
+  if (!c.shares) return {};
+  const bool momenta = c.momentum.conserved;
+  return {{"model", parts_json(*c.shares, &study::DriftShare::model, momenta)},
+          {"integration", parts_json(*c.shares, &study::DriftShare::integration, momenta)}};
 }
 
 Json dropped_json(const Certificate& c) {
@@ -140,10 +149,7 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
   c["momentum_drift"] = certificate.momentum.conserved
                             ? Json{{"linear", certificate.momentum.linear}, {"angular", certificate.momentum.angular}}
                             : Json();
-  const bool momenta = certificate.momentum.conserved;
-  c["drift_by"] = certificate.shares ? Json{{"model", drifts_json(certificate.shares->model, momenta)},
-                                            {"integration", drifts_json(certificate.shares->integration, momenta)}}
-                                     : Json();
+  c["drift_by"] = drift_by_json(certificate);
   c["dropped"] = dropped_json(certificate);
   c["families"] = Json::array();
   for (const study::BodyFamilies& f : certificate.families)

@@ -157,11 +157,12 @@ std::string families_text(const study::Certificate& certificate) {
 }
 
 /// Of a drift, whose it is.
-std::string whose(const study::Certificate& c, double study::Drifts::*drift) {
+std::string whose(const study::Certificate& c, std::optional<study::DriftShare> study::DriftShares::*drift) {
   if (!c.shares) return "";
-  const double model = c.shares->model.*drift, integration = c.shares->integration.*drift;
-  if (model == 0) return integration == 0 ? "" : ", all of it by integration";
-  if (integration > model) return "";  // not resolved
+  const std::optional<study::DriftShare>& share = *c.shares.*drift;
+  const double model = share ? share->model : 0, integration = share ? share->integration : 0;
+  if (share && model == 0) return integration == 0 ? "" : ", all of it by integration";
+  if (!share || integration >= model) return ", by the model or by integration: not told apart";
   return fmt::format(", {} by what the model leaves out and at most {} by integration", percent(model),
                      percent(integration));
 }
@@ -171,7 +172,7 @@ std::string energy_text(const study::Certificate& c) {
   if (c.untruncated_drift > 2 * c.energy_drift)
     return text + fmt::format(" by integration; the energy without truncation by {}, which the model leaves out",
                               percent(c.untruncated_drift));
-  return text + whose(c, &study::Drifts::energy);
+  return text + whose(c, &study::DriftShares::energy);
 }
 
 /// What the formulation drops, in shares of the greatest term on the same coordinates.
@@ -258,10 +259,11 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
   if (!certificate.families.empty()) line("modes", families_text(certificate));
   line("energy", energy_text(certificate));
   if (certificate.momentum.conserved)
-    line("momentum", fmt::format("linear off by {}{}; angular by {}{}: nothing outside acts on the tree, and it is to "
-                                 "be conserved",
-                                 percent(certificate.momentum.linear), whose(certificate, &study::Drifts::linear),
-                                 percent(certificate.momentum.angular), whose(certificate, &study::Drifts::angular)));
+    line("momentum",
+         fmt::format("linear off by {}{}; angular by {}{}: nothing outside acts on the tree, and it is to "
+                     "be conserved",
+                     percent(certificate.momentum.linear), whose(certificate, &study::DriftShares::linear),
+                     percent(certificate.momentum.angular), whose(certificate, &study::DriftShares::angular)));
   if (!certificate.dropped.empty()) line("dropped", dropped_text(certificate));
   const NeglectedAcceleration& n = certificate.neglected;
   // Vibrations that hardly move an output are in it: where the error of outputs is known, that says it.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "withy/core/plugin/formulation.hpp"
@@ -90,31 +89,34 @@ bool conserves(const Scene& scene) {
 /// than a quarter of what it drifts by may be its own.
 constexpr double another_drift = 0.1, rest_of_its_own = 0.25;
 
+/// What a coarse run drifts by beyond the run is the error of its own steps, and with as much in what it has, no share
+/// is known. Little of it may be that it is looked at elsewhere.
+std::optional<DriftShare> split(double whole, double coarse) {
+  if (coarse > (1 + rest_of_its_own) * whole) return {};
+  return DriftShare{std::min(coarse, whole), std::abs(whole - coarse)};
+}
+
 /// Where the equations conserve, drifts are the integration's. Elsewhere the coarse run of the estimate, in the same
 /// equations, drifts by what they leave out; what the run itself drifts by beside that is the integration's.
 std::optional<DriftShares> shares_of(const Prepared& prepared, const Evidence& evidence) {
   const RunSummary& s = *evidence.summary;
   if (evidence.plan || s.status != RunStatus::completed) return {};
-  const Drifts all{s.energy_drift, s.momentum.linear, s.momentum.angular};
-  if (conserves(prepared.scene)) return DriftShares{{}, all};
+  const MomentumDrift& momentum = s.momentum;
+  if (conserves(prepared.scene))
+    return DriftShares{DriftShare{0, s.energy_drift}, DriftShare{0, momentum.linear}, DriftShare{0, momentum.angular}};
   if (!evidence.estimate || evidence.estimate->distances.until < evidence.estimate->end) return {};
-  // The coarse run may drift by its own errors too: no share is more than the whole.
   const Drifts& coarse = evidence.estimate->drifts;
-  const auto split = [](double whole, double by_model) {
-    return std::pair(std::min(by_model, whole), std::min(std::abs(whole - by_model), whole));
-  };
-  DriftShares shares;
-  std::tie(shares.model.energy, shares.integration.energy) = split(s.untruncated_drift, coarse.energy);
-  std::tie(shares.model.linear, shares.integration.linear) = split(all.linear, coarse.linear);
-  std::tie(shares.model.angular, shares.integration.angular) = split(all.angular, coarse.angular);
-  const auto unclear = [&](double Drifts::*d) {
-    return shares.integration.*d > rest_of_its_own * shares.model.*d && shares.model.*d > 0;
+  DriftShares shares{split(s.untruncated_drift, coarse.energy), split(momentum.linear, coarse.linear),
+                     split(momentum.angular, coarse.angular)};
+  const auto unclear = [&](const std::optional<DriftShare>& d) {
+    return !d || (d->integration > rest_of_its_own * d->model && d->model > 0);
   };
   if (evidence.estimate->off > another_drift &&
-      (unclear(&Drifts::energy) || unclear(&Drifts::linear) || unclear(&Drifts::angular)))
+      (unclear(shares.energy) || unclear(shares.linear) || unclear(shares.angular)))
     return {};
+  // Of its own energy, which it conserves; without truncation that drifts by what the model leaves out.
   if (prepared.scene.formulation->terms().truncation == Truncation::symmetric)
-    shares.integration.energy = s.energy_drift;  // of its own energy, which it conserves
+    shares.energy = DriftShare{std::min(coarse.energy, s.untruncated_drift), s.energy_drift};
   return shares;
 }
 

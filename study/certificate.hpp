@@ -30,10 +30,15 @@ struct BodyFamilies {
   std::size_t modes = 0;
 };
 
-/// Drifts of energy and momenta, told apart.
+/// A drift, told apart.
+struct DriftShare {
+  double model = 0;        ///< what the formulation leaves out makes of it
+  double integration = 0;  ///< no more than this is the integration's; zero where `model` is all of it
+};
+
+/// Of energy and momenta; none where the coarse run that tells them apart drifts by more itself.
 struct DriftShares {
-  Drifts model;        ///< what the formulation leaves out makes of them
-  Drifts integration;  ///< no more than this is the integration's; zero where `model` is all of it
+  std::optional<DriftShare> energy, linear, angular;
 };
 
 struct Certificate {

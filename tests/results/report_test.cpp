@@ -10,6 +10,7 @@
 #include <random>
 
 #include "scratch.hpp"
+#include "withy/results/certificate_text.hpp"
 #include "withy/results/csv_recorder.hpp"
 #include "withy/results/report/base64.hpp"
 #include "withy/results/report/decimated_table.hpp"
@@ -31,6 +32,24 @@ TEST(RunText, AnAngleThatRoundsToZeroHasNoSign) {
   EXPECT_EQ(readable(-1e-9, "rad"), "0.0000 deg");
   EXPECT_EQ(readable(-0.0, "rad"), "0.0000 deg");
   EXPECT_EQ(readable(-0.001, "rad"), "-0.0573 deg");
+}
+
+std::string certificate_of(const study::Certificate& c) {
+  return certificate_text(Model({}, {}, Vector3::Zero()), RunSummary(), c);
+}
+
+TEST(CertificateText, ADriftThatIsNotToldApartIsNobodys) {
+  study::Certificate c;
+  c.energy_drift = c.untruncated_drift = 2e-3;
+  const std::string unknown = "off by 0.2 % of the greatest, by the model or by integration: not told apart\n";
+  c.shares = study::DriftShares{};
+  EXPECT_THAT(certificate_of(c), HasSubstr(unknown));
+  c.shares->energy = study::DriftShare{1e-3, 1e-3};
+  EXPECT_THAT(certificate_of(c), HasSubstr(unknown));
+  c.shares->energy = study::DriftShare{1.9e-3, 1e-4};
+  EXPECT_THAT(certificate_of(c), HasSubstr(", 0.19 % by what the model leaves out and at most 0.01 % by integration"));
+  c.shares->energy = study::DriftShare{0, 2e-3};
+  EXPECT_THAT(certificate_of(c), HasSubstr(", all of it by integration"));
 }
 
 TEST(DecimatedTable, KeepsEveryExtremeAtItsPlaceAndOrderWhateverTheLength) {

@@ -329,6 +329,34 @@ TEST(StudyRun, CertificatesHaveTheMomentaOfFreeTrees) {
   EXPECT_FALSE(run_of("pendulum", {}, "quadratic").certificate.momentum.conserved) << "it hangs on the world";
 }
 
+/// A stiff boom that a servo turns slowly, in steps that are far too loose: in tight ones the model alone drifts by
+/// less than a thousandth of it, and what its coarse run drifts by is that run's.
+TEST(StudyRun, NoDriftIsTheModelsWhereACoarseRunDriftsByMore) {
+  SceneValues values = SceneValues::parse(R"(
+format: withy/1
+bodies:
+  hub: {type: rigid, mass: 2.8, center_of_mass: [0.08, 0, 0], inertia: [0.003, 0.008, 0.01, 0, 0, 0], frames: {rim: {position: [0.15, 0, 0]}}}
+  boom: {type: beam, length: 3.7, mass_per_length: 5, bending_y: {stiffness: 2.7e5, modes: 2}}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub.rim, child: boom}
+loads: {servo: {type: pid, hinge: axle, proportional: 3.4, integral: 1.3, derivative: 0.34, reference: -0.94}}
+time: {end: 0.155, output: 0.00155}
+)",
+                                          "stiff");
+  values.choose_formulation("ruthless", "the test");
+  const auto drifts = [&](const char* integrator) {
+    values.set_text(std::string("integrator=") + integrator);
+    return run(prepare(values, plugins()), plugins()).certificate;
+  };
+  const Certificate loose = drifts("{name: dopri5, rtol: 1e-3, atol: 1e-12}");
+  const Certificate tight = drifts("{name: dop853, rtol: 1e-11, atol: 1e-13}");
+  ASSERT_TRUE(loose.estimate && loose.shares);
+  EXPECT_LT(tight.energy_drift, 1e-3 * loose.energy_drift);
+  EXPECT_GT(loose.estimate->drifts.energy, 1.25 * loose.energy_drift);
+  EXPECT_FALSE(loose.shares->energy);
+}
+
 /// Of a spacecraft that drifts: its momentum is of another order than its velocity's own. Nothing else feels a drift,
 /// and an arm on a foundation has none.
 TEST(StudyRun, CertificatesTellWhatTheSymmetricTruncationMakesOfAVelocityOfTheWhole) {
