@@ -122,6 +122,9 @@ std::string more_modes_text(const study::MoreModesOutcome& outcome, const Model&
                      until < reached ? fmt::format("; up to {:.4g} s", until) : "");
 }
 
+/// Shares of an energy below this are rounding's.
+constexpr double rounding_of_energy = 1e-12;
+
 std::string body_text(const BodyValidity& b, const RunSummary& summary) {
   std::string out =
       b.rate_ratio > 0
@@ -140,7 +143,7 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
   for (const HighestMode& h : b.highest)
     if (h.modes > 1)
       out += fmt::format("; highest of {} {}modes has {} of their energy", h.modes, study::before_mode(h.family),
-                         percent(h.share));
+                         h.share > rounding_of_energy ? percent(h.share) : "next to none");
   return out;
 }
 
@@ -212,6 +215,18 @@ std::vector<std::string> plan_text(const study::Certificate& certificate) {
   return lines;
 }
 
+/// A value to so many digits that it is seen on which side of its limit, of three digits, it lies.
+std::string beside_limit(double value, double limit) {
+  constexpr int most = 17;
+  const double told = std::stod(fmt::format("{:.3g}", limit));
+  for (int digits = 2; digits < most; ++digits) {
+    std::string text = fmt::format("{:.{}g}", value, digits);
+    const double rounded = std::stod(text);
+    if (value > limit ? rounded > told : rounded <= told) return text;
+  }
+  return fmt::format("{:.{}g}", value, most);
+}
+
 }  // namespace
 
 /// By how much longer steps have to become for a mode less to be proposed.
@@ -236,7 +251,8 @@ std::string step_limit_text(const study::StepLimit& s) {
 std::string limits_text(const std::vector<study::Indicator>& indicators) {
   if (indicators.empty()) return {};
   const study::Indicator& first = indicators.front();
-  const std::string how = fmt::format("{}: {:.2g}, limit {:.3g}", first.text, first.value, first.limit);
+  const std::string how =
+      fmt::format("{}: {}, limit {:.3g}", first.text, beside_limit(first.value, first.limit), first.limit);
   const auto passed =
       std::count_if(indicators.begin(), indicators.end(), [](const study::Indicator& i) { return i.use() > 1; });
   if (passed == 0) return "all are kept; nearest is " + how;

@@ -171,13 +171,16 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
     return "nothing is left out: kinematics is exact and nothing is truncated";
   if (beyond && !beyond->highest) return "not estimated: it was not asked for";
   std::string third = "terms of third order in the deflection are left out";
-  // (deflection over length)² of the range: what second-order kinematics was measured to be off by.
+  // (deflection over length)² of the range: what second-order kinematics was measured to be off by at a state. What a
+  // motion is off by after a while is more, for frequencies are wrong by that and phases run apart.
   if (!summary.peak_deflection_ratio.empty()) {
     double deflection = 0;
     for (const auto& [body, ratio] : summary.peak_deflection_ratio) deflection = std::max(deflection, ratio);
     const double share = 100 * deflection * deflection;
-    third += fmt::format(", about {} % of it where it is {:.2g} of a body's length",
-                         share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share), deflection);
+    third += fmt::format(
+        ", about {} % of it at an instant where it is {:.2g} of a body's length; that is no error of the run, which "
+        "grows with time, to many times as much",
+        share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share), deflection);
   }
   if (!beyond) return third + "; not measured, for no model of higher order can treat all bodies of the scene";
   return third +

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "withy/core/tree/rigid_inertia.hpp"
 
@@ -99,7 +100,9 @@ std::optional<Value> loaded_family(const Matrix6& I, const std::string& strain, 
   const double least_mass = least_part * I.bottomRightCorner<3, 3>().diagonal().maxCoeff(),
                least_inertia = least_part * I.topLeftCorner<3, 3>().diagonal().maxCoeff();
   const bool mass = load->mass > least_mass;
-  const double offset = mass ? load->moment / load->mass : 0, central = load->inertia - load->moment * offset;
+  // A centre of mass at the tip is off it by rounding.
+  const bool beyond = mass && std::abs(load->moment) > std::sqrt(least_mass * least_inertia);
+  const double offset = beyond ? load->moment / load->mass : 0, central = load->inertia - load->moment * offset;
   const bool inertia = central > least_inertia;
   if (!mass && !inertia) return Value(varies && family == vibration_modes ? family : std::string("clamped-free"));
   std::vector<Value::Member> members{{"name", Value(family)},

@@ -34,8 +34,28 @@ TEST(RunText, AnAngleThatRoundsToZeroHasNoSign) {
   EXPECT_EQ(readable(-0.001, "rad"), "-0.0573 deg");
 }
 
+/// Two digits of 0.1254 are beyond three of a limit of 0.129.
+TEST(CertificateText, AValueIsSeenOnItsSideOfItsLimit) {
+  const auto told = [](double value, double limit) { return limits_text({{"rate", value, limit, "it is wrong"}}); };
+  EXPECT_EQ(told(0.1254, 0.129), "all are kept; nearest is rate: 0.125, limit 0.129");
+  EXPECT_EQ(told(0.12896, 0.129), "all are kept; nearest is rate: 0.129, limit 0.129");
+  EXPECT_EQ(told(0.0812, 0.1), "all are kept; nearest is rate: 0.081, limit 0.1");
+  EXPECT_EQ(told(0.1, 0.1), "all are kept; nearest is rate: 0.1, limit 0.1");
+  EXPECT_EQ(told(0.1002, 0.1), "one is passed, rate: 0.1002, limit 0.1; beyond it it is wrong");
+  EXPECT_EQ(told(0.81, 0.129), "one is passed, rate: 0.81, limit 0.129; beyond it it is wrong");
+}
+
 std::string certificate_of(const study::Certificate& c) {
   return certificate_text(Model({}, {}, Vector3::Zero()), RunSummary(), c);
+}
+
+TEST(CertificateText, WhatRoundingLeavesInAModeIsNoShareOfItsEnergy) {
+  study::Certificate c;
+  c.bodies.resize(1);
+  c.bodies[0].highest = {{"bending_y", 1, 1.6e-31, 2}};
+  EXPECT_THAT(certificate_of(c), HasSubstr("highest of 2 bending_y modes has next to none of their energy"));
+  c.bodies[0].highest[0].share = 3e-9;
+  EXPECT_THAT(certificate_of(c), HasSubstr("highest of 2 bending_y modes has 3e-07 % of their energy"));
 }
 
 TEST(CertificateText, ADriftThatIsNotToldApartIsNobodys) {

@@ -74,6 +74,15 @@ TEST(TipLoad, WhatSlidesAcrossIsNotMovedAcross) {
   expect_load(family(scene, "bending_z"), mass, arm, inertia);
 }
 
+/// What rounding leaves of a moment is no offset: it is written into scenes.
+TEST(TipLoad, ABodyOnAPinHasNoOffset) {
+  for (double angle = 1; angle < 180; angle += 7) {
+    const Prepared scene = boom("type: revolute, axis: [0, 0, 1]",
+                                "initial: {hinges: {joint: {position: " + std::to_string(angle) + " deg}}}\n");
+    EXPECT_EQ(family(scene, "bending_y").number_at("tip_offset"), 0) << angle;
+  }
+}
+
 TEST(TipLoad, ABeamThatCarriesNothingKeepsAFreeTip) {
   const Prepared scene =
       prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/spinning-beam.yaml"), plugins());
