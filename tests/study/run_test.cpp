@@ -365,6 +365,50 @@ TEST(StudyRun, WhatIsLeftOutAtAnInstantIsNotToldAsTheErrorOfARun) {
   EXPECT_NE(said.find("that is no error of the run, which grows with time"), std::string::npos) << said;
 }
 
+/// A heavy boom on a ball joint that gravity turns about its axis: nothing turns fast or bends far, and in `consistent`
+/// the tip is off by three quarters of its deflection.
+/// \param in_space it turns little there, and bends by its spring alone
+CertifiedRun run_of_a_boom_on_a_ball(const std::string& formulation, bool in_space) {
+  SceneValues values = SceneValues::parse(R"(
+format: withy/1
+bodies:
+  ball: {type: rigid, mass: 4, center_of_mass: [0.38, 0, 0], inertia: [0.11, 0.29, 0.34, 0, 0, 0], frames: {rim: {position: [0.76, 0, 0]}}}
+  boom: {type: beam, length: 11, mass_per_length: 0.2, bending_y: {stiffness: 31400, modes: 3}}
+hinges:
+  joint: {type: spherical, parent: world, child: ball}
+  pin: {type: revolute, axis: [0, 0, 1], parent: ball.rim, child: boom}
+loads: {spring: {type: hinge-spring, hinge: pin, stiffness: 4240, free_position: 0.08}}
+initial: {hinges: {joint: {rate: [1.283, 0.069, 0.151]}}}
+time: {end: 2.45, output: 0.0245}
+integrator: {name: dop853, rtol: 1e-8, atol: 1e-10}
+)",
+                                          "ball");
+  values.set_text(in_space ? "initial.hinges.joint.rate=[0.02, 0.01, 0.01]" : "gravity=[0, -9.81, 0]");
+  return run(prepare(values.choose_formulation(formulation, "the test"), plugins()), plugins());
+}
+
+TEST(StudyRun, AnIndicatorTellsWhatATruncationWithSecondOrderLeavesOut) {
+  const auto indicator = [](const CertifiedRun& run) {
+    const std::vector<Indicator>& all = run.certificate.indicators;
+    const auto found = std::find_if(all.begin(), all.end(), [](const Indicator& i) {
+      return i.text.find("accelerations left out against quadratic") != std::string::npos;
+    });
+    return found == all.end() ? std::nullopt : std::optional(*found);
+  };
+  const CertifiedRun falling = run_of_a_boom_on_a_ball("consistent", false);
+  ASSERT_EQ(falling.summary.status, RunStatus::completed);
+  ASSERT_TRUE(indicator(falling));
+  EXPECT_GT(indicator(falling)->use(), 1);
+  EXPECT_EQ(indicator(falling)->value, falling.certificate.neglected.rms);
+  for (const Indicator& i : falling.certificate.indicators) EXPECT_EQ(i.use() > 1, i.text == indicator(falling)->text);
+  const CertifiedRun floating = run_of_a_boom_on_a_ball("consistent", true);
+  ASSERT_TRUE(indicator(floating));
+  EXPECT_LT(indicator(floating)->use(), 1);
+  // Rates and loads tell the others, and nothing is truncated in `quadratic`.
+  for (const char* other : {"ruthless", "linear", "quadratic"})
+    EXPECT_FALSE(indicator(run_of_a_boom_on_a_ball(other, true))) << other;
+}
+
 /// Of a spacecraft that drifts: its momentum is of another order than its velocity's own. Nothing else feels a drift,
 /// and an arm on a foundation has none.
 TEST(StudyRun, CertificatesTellWhatTheSymmetricTruncationMakesOfAVelocityOfTheWhole) {
