@@ -94,8 +94,7 @@ std::string stiff_remedy(const Prepared& prepared, const RunSummary& summary) {
 
 const char* const shorter_steps =
     " What to do: take shorter steps (a smaller 'step', or 'rtol' or 'max_step' of an integrator that controls its "
-    "error), or one "
-    "that no vibration limits, as radau.";
+    "error), or one that no vibration limits, as radau.";
 
 }  // namespace
 
