@@ -7,8 +7,8 @@
 #include <span>
 
 #include "withy/campaign/derived.hpp"
-#include "withy/campaign/slurm.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/run_command.hpp"
 #include "withy/results/text_table.hpp"
 #include "withy/study/point.hpp"
 
@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 /// The run of the case by itself, with all its results.
 std::string run_command_of(const Plan& plan, const SceneValues& scene, const std::vector<Value>& values) {
-  std::string text = "withy run " + scene.file();
+  std::string text = command_with("withy run", scene.file(), plan.plugin_folders);
   const auto add = [&](const std::string& path, const Value& value) {
     text += " --set " + quoted(study::Change{path, value}.text());
   };

@@ -10,6 +10,7 @@
 #include "withy/campaign/histories_picture.hpp"
 #include "withy/results/csv.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/run_command.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -90,11 +91,15 @@ class Collector {
         row += result && result->completed() ? fmt::format(",{}", result->numbers.at(c)) : ",";
       table.line(row);
       if (result && !result->completed())
-        failed.line(fmt::format("{},{},{},{}", i, result->status, csv_text(result->message),
-                                csv_text(fmt::format("withy sweep case {} {}", about_.plan, i))));
+        failed.line(fmt::format("{},{},{},{}", i, result->status, csv_text(result->message), csv_text(repeat_of(i))));
     }
     table.finish();
     failed.finish();
+  }
+
+  /// The command that runs a case alone.
+  std::string repeat_of(std::uint64_t index) const {
+    return command_with("withy sweep case", about_.plan, about_.plugin_folders) + fmt::format(" {}", index);
   }
 
   /// Some of the numbers of the completed cases among these, where they have them.

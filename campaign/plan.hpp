@@ -69,6 +69,8 @@ struct Plan {
   std::vector<std::string> final, peak;  ///< names of what is kept
   HistoryPlan history;                   ///< of what is kept over time
   bool stop_on_failure = false;
+  /// Folders of plugins that a command for one of the cases has to name; the caller's to set, no part of the plan.
+  std::vector<std::string> plugin_folders;
   bool lanes = false;       ///< cases that can are evaluated several at once, see case_lanes.hpp
   std::string fingerprint;  ///< SHA-256 of all that decides on the bits of the cases: plan, scene, files, programs
 };

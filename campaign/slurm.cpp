@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "withy/results/output_file.hpp"
+#include "withy/results/run_command.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -34,12 +35,6 @@ std::string output_of(const std::string& command) {
 }
 
 }  // namespace
-
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
-  return result + '\'';
-}
 
 std::string array_script(const SlurmJob& job) {
   std::vector<std::string> all = {"--job-name=withy-sweep",

@@ -33,7 +33,4 @@ struct Submitted {
 /// \throws std::runtime_error where sbatch fails; std::system_error
 Submitted submit(const SlurmJob& job, bool dry);
 
-/// In single quotes, for a shell.
-std::string quoted(const std::string& text);
-
 }  // namespace withy::campaign

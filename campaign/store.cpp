@@ -49,7 +49,8 @@ Json json_of(const StoreDescription& d) {
           {"columns", d.columns},
           {"drawn", d.drawn},
           {"histories", d.histories},
-          {"times", d.times}};
+          {"times", d.times},
+          {"plugin_folders", d.plugin_folders}};
 }
 
 /// The description with its checksum.
@@ -90,6 +91,7 @@ std::optional<StoreDescription> described(const std::filesystem::path& store) {
     // Stores of earlier versions keep nothing over time.
     d.histories = j.value("histories", std::vector<std::string>());
     d.times = j.value("times", std::vector<double>());
+    d.plugin_folders = j.value("plugin_folders", std::vector<std::string>());
     return d;
   } catch (const Json::exception&) {
     return {};
@@ -135,6 +137,7 @@ bool same(CaseResult a, CaseResult b) {
 StoreDescription description_of(const Plan& plan) {
   StoreDescription d;
   d.plan = plan.file;
+  d.plugin_folders = plan.plugin_folders;
   d.name = plan.name;
   d.fingerprint = plan.fingerprint;
   d.size = Cases(plan).size();

@@ -31,7 +31,8 @@ struct StoreDescription {
   std::vector<std::string> columns;    ///< of what is kept
   std::vector<std::string> histories;  ///< of what is kept over time; a case's numbers are of them behind the columns
   std::vector<double> times;           ///< [s] that each history has a number at
-  bool drawn = false;                  ///< whether cases of a point of the grids differ by draws
+  std::vector<std::string> plugin_folders;  ///< that the command named
+  bool drawn = false;                       ///< whether cases of a point of the grids differ by draws
   /// Whether the cases of each point of the grids are a sample.
   [[nodiscard]] bool by_draws() const { return design == Design::product && drawn && draws > 1; }
 };

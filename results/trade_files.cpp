@@ -12,6 +12,7 @@
 #include "withy/results/output_file.hpp"
 #include "withy/results/provenance.hpp"
 #include "withy/results/report/report_page.hpp"
+#include "withy/results/run_command.hpp"
 #include "withy/results/svg_plot.hpp"
 #include "withy/scene/scene_error.hpp"
 #include "withy/scene/sha256.hpp"
@@ -134,25 +135,17 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
   return svg_plot(title, legend, panels);
 }
 
-namespace {
-
-/// As a POSIX shell takes it for one word.
-std::string one_word(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
-  return word + '\'';
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<study::TradeResult>& results,
-                Registry& registry) {
+                Registry& registry, const std::vector<std::string>& plugin_folders) {
   for (std::size_t i = 0; i < results.size(); ++i) {
-    std::string command = "withy run " + prepared.scene.file + " --formulation " + results[i].point.formulation;
-    for (const std::string& setting : prepared.scene.settings) command += " --set " + one_word(setting);
-    for (const std::string& over : results[i].point.over) command += " --set " + one_word(over);
+    std::string command = command_with("withy run", prepared.scene.file, plugin_folders) + " --formulation " +
+                          results[i].point.formulation;
+    for (const std::string& setting : prepared.scene.settings) command += " --set " + quoted(setting);
+    for (const std::string& over : results[i].point.over) command += " --set " + quoted(over);
     for (const study::Change& change : study::changes_at(prepared.scene, results[i].point, registry))
-      command += " --set " + one_word(change.text());
+      command += " --set " + quoted(change.text());
     trade["points"].at(i)["command"] = command;
   }
   return trade;
@@ -161,13 +154,15 @@ Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<s
 std::vector<std::string> trade_content() { return {"trade.json", "trade.csv", "trade.svg", report_name}; }
 
 void write_trade(const std::filesystem::path& folder, const study::Prepared& prepared, const Json& content,
-                 const std::vector<study::TradeResult>& results, const std::vector<bool>& front, Registry& registry) {
+                 const std::vector<study::TradeResult>& results, const std::vector<bool>& front, Registry& registry,
+                 const std::vector<std::string>& plugin_folders) {
   const std::string title = prepared.title();
   write_file(folder / "trade.json", json_text(content));
   write_file(folder / "trade.csv", trade_csv(results, front));
   write_file(folder / "trade.svg", trade_picture(title, results, front));
   if (has_report_page())
-    write_study_page(folder / report_name, "trade", title, trade_page(prepared, content, results, registry));
+    write_study_page(folder / report_name, "trade", title,
+                     trade_page(prepared, content, results, registry, plugin_folders));
 }
 
 namespace {

@@ -28,14 +28,16 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
                           const std::vector<bool>& front);
 
 /// What the page of a trade shows: the same with the command that runs each model.
+/// \param plugin_folders that the command has to name
 nlohmann::ordered_json trade_page(const study::Prepared& prepared, nlohmann::ordered_json trade,
-                                  const std::vector<study::TradeResult>& results, Registry& registry);
+                                  const std::vector<study::TradeResult>& results, Registry& registry,
+                                  const std::vector<std::string>& plugin_folders);
 /// The files of a trade in its folder: JSON, table, picture and their page.
 std::vector<std::string> trade_content();
 /// Writes them. \param content of trade.json \throws std::system_error
 void write_trade(const std::filesystem::path& folder, const study::Prepared& prepared,
                  const nlohmann::ordered_json& content, const std::vector<study::TradeResult>& results,
-                 const std::vector<bool>& front, Registry& registry);
+                 const std::vector<bool>& front, Registry& registry, const std::vector<std::string>& plugin_folders);
 
 /// Finished points in a folder, a file each.
 class TradeFolder : public study::PointStore {

@@ -22,7 +22,9 @@ ExitStatus status_of(const campaign::CaseResult& result) {
 
 campaign::Plan read_plan(const SweepArguments& arguments, Registry& registry) {
   try {
-    return campaign::read_plan(arguments.plan, registry);
+    campaign::Plan plan = campaign::read_plan(arguments.plan, registry);
+    plan.plugin_folders = arguments.plugin_directories;
+    return plan;
   } catch (const std::system_error& e) {
     throw InputError(e.what());
   }

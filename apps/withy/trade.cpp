@@ -44,7 +44,7 @@ ExitStatus trade(const TradeArguments& arguments) {
   const nlohmann::ordered_json j = trade_json(engine.scene(), study, results, front);
   std::string text = arguments.json ? json_text(j) : trade_text(title, study, results, front, engine.registry());
   if (!arguments.out.empty()) {
-    write_trade(arguments.out, engine.prepared(), j, results, front, engine.registry());
+    write_trade(arguments.out, engine.prepared(), j, results, front, engine.registry(), arguments.plugin_directories);
     if (!arguments.json) text += folder_text(arguments.out, "trade.csv, trade.svg and trade.json");
   }
   print(text);

@@ -132,6 +132,25 @@ TEST(SweepCommand, ACaseAloneIsTheRunThatItsCommandMakes) {
   EXPECT_EQ(summary["peaks"]["tip_deflection"]["link1"]["y"], one["results"]["peak.link1.tip.deflection_y[m]"]);
 }
 
+TEST(SweepCommand, CommandsThatRepeatACaseNameTheFoldersOfPlugins) {
+  const SweepFolder folder(
+      "format: withy-sweep/1\nscene: scenes/two-link-slew.yaml\nset: {formulation: consistent}\n"
+      "vary: {loads.slew.time_scale: {grid: [1.2]}}\nkeep: {final: [shoulder]}\n");
+  std::filesystem::create_directories(folder.path() / "my plugins");
+  std::filesystem::create_directories(folder.path() / "others");
+  const std::vector<std::string> plugins = {"--plugins", "my plugins", "--plugins", "others"};
+  const auto with_plugins = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), plugins.begin(), plugins.end());
+    return folder.sweep(std::move(arguments));
+  };
+  const json one = json::parse(with_plugins({"case", "plan.yaml", "0", "--json"}).out);
+  EXPECT_THAT(one["command"].get<std::string>(),
+              StartsWith("withy run scenes/two-link-slew.yaml --plugins 'my plugins' --plugins others --set '"));
+  ASSERT_EQ(with_plugins({"run", "plan.yaml", "--out", "store"}).status, 0);
+  EXPECT_THAT(folder.read("store/failed.csv"),
+              HasSubstr("withy sweep case plan.yaml --plugins 'my plugins' --plugins others 0"));
+}
+
 /// WITHY_KILLS sets the number of kills; the target `kills` makes more.
 TEST(SweepKills, AtAnyMomentLeaveTheSameTable) {
   const SweepFolder folder;

@@ -77,13 +77,17 @@ TEST(Trade, FailuresAreRowsWithTheirReason) {
 // What the trade was asked for is part of each run.
 TEST(Trade, ThePageGivesTheCommandsOfItsPoints) {
   const Folder folder;
-  const Finished f = trade(
-      folder, {"--set", "name=it's slewed", "--formulations", "quadratic", "--over", "loads.slew.time_scale=1,1.5"});
+  std::filesystem::create_directories(folder.path() / "my plugins");
+  const Finished f = trade(folder, {"--set", "name=it's slewed", "--formulations", "quadratic", "--over",
+                                    "loads.slew.time_scale=1,1.5", "--plugins", "my plugins"});
   ASSERT_EQ(f.status, 0) << f.err;
   const std::string page = folder.read("out/report.html");
   if (page.empty()) GTEST_SKIP() << "built without the page of reports";
-  EXPECT_THAT(page, HasSubstr(R"(--formulation quadratic --set 'time.end=0.3' --set 'name=it'\\''s slewed' --set )"
-                              R"('loads.slew.time_scale=1.5' --set 'integrator={name: dopri5)"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          R"( --plugins 'my plugins' --formulation quadratic --set 'time.end=0.3' --set 'name=it'\\''s slewed' --set )"
+          R"('loads.slew.time_scale=1.5' --set 'integrator={name: dopri5)"));
 }
 
 // Distances from the reference as `compare` measures them.
