@@ -69,6 +69,13 @@ std::shared_ptr<const study::Prepared> continuous(const Scene& scene, const std:
 namespace {
 /// Tables of loads would give numbers at a time that is not finite, as if it lay beyond their end.
 constexpr Evaluation no_instant = {Evaluation::Outcome::nonfinite};
+
+/// Vectorizes, unlike a search for the first that is not.
+bool all_finite(std::span<const double> numbers) {
+  double nothing = 0;  // or NaN
+  for (const double number : numbers) nothing += 0.0 * number;
+  return nothing == 0;
+}
 }  // namespace
 
 struct Equations::Parts {
@@ -111,7 +118,8 @@ struct Equations::Parts {
   Evaluation evaluate(double t, std::span<const double> y) {
     expect(y.size(), size, "y");
     std::copy(y.begin(), y.end(), full.begin());
-    if (!std::isfinite(t)) return no_instant;
+    // A number that nothing depends on would go by unseen.
+    if (!std::isfinite(t) || !all_finite(y)) return no_instant;
     return equations.derivatives(t, full, full_dot, work);
   }
   [[nodiscard]] const LoadNode& load_of_input(std::size_t index) const {
@@ -184,7 +192,8 @@ Evaluation Equations::derivatives(double t, std::span<const double> y, std::span
 EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, std::span<double> y_dot) {
   Parts& p = *parts_;
   const std::size_t n = p.size, count = n == 0 ? 0 : y.size() / n;
-  Parts::expect(y.size(), count * n, "y");
+  if (y.size() != count * n)
+    throw std::invalid_argument(fmt::format("y: got {} numbers; need a multiple of {}", y.size(), n));
   Parts::expect(y_dot.size(), y.size(), "y_dot");
   if (count > 0 && !std::isfinite(t)) return {0, no_instant};
   if (!p.in_lanes) p.in_lanes.emplace(p.equations);
@@ -207,6 +216,7 @@ EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, s
     }
     p.in_lanes->together->derivatives(std::span(calls).first(lanes.size()));
     for (std::size_t k = 0; k < some; ++k) {
+      if (!all_finite(y.subspan((first + k) * n, n))) lanes[k].call.evaluation = no_instant;
       if (!lanes[k].call.evaluation.ok()) {
         std::copy_n(lanes[k].y.begin(), n, p.full.begin());  // for `reason`
         return {first + k, lanes[k].call.evaluation};

@@ -146,7 +146,33 @@ TEST(HostedEquations, of_many_states_name_the_row_that_has_none) {
   EXPECT_EQ(equations.reason(0, done.evaluation),
             "t = 0 s: the state is not finite: '" + equations.states()[7].name + "' is nan.");
   y.pop_back();
-  EXPECT_THROW(static_cast<void>(equations.derivatives_many(0, y, y_dot)), std::invalid_argument);
+  try {
+    static_cast<void>(equations.derivatives_many(0, y, y_dot));
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_EQ(e.what(), "y: got " + std::to_string(y.size()) + " numbers; need a multiple of " +
+                            std::to_string(equations.size()));
+  }
+}
+
+// Where a slider or a free body is nothing depends on: such numbers would go by unseen.
+TEST(HostedEquations, have_no_values_at_a_state_with_any_number_that_is_none) {
+  for (const std::string hinge : {"prismatic, axis: [1, 0, 0]", "free"}) {
+    Equations equations(Scene::parse(test::library(), R"(format: withy/1
+bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {parent: world, child: b, type: )" + hinge + "}}"));
+    const std::size_t n = equations.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      std::vector<double> y = equations.y0(), y_dot(n), twice_dot(2 * n);
+      y[i] = std::nan("");
+      EXPECT_FALSE(equations.derivatives(0, y, y_dot).ok()) << hinge << i;
+      std::vector<double> twice = equations.y0();
+      twice.insert(twice.end(), y.begin(), y.end());
+      const host::EvaluatedRows many = equations.derivatives_many(0, twice, twice_dot);
+      EXPECT_EQ(many.rows, 1U) << hinge << i;
+      EXPECT_THAT(equations.reason(0, many.evaluation), HasSubstr("'" + equations.states()[i].name + "' is nan"));
+    }
+  }
 }
 
 TEST(HostedEquations, refuse_what_they_do_not_know) {

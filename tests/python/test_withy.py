@@ -65,6 +65,19 @@ def test_statistics_are_those_of_outputs_that_ask_for_them(slew):
     assert position["min"]["t"] < position["max"]["t"] and position["rms"] >= abs(position["mean"])
 
 
+def test_options_of_a_run_change_the_members_that_they_name_alone():
+    arm = withy.load(SCENES / "commanded-arm.yaml")
+    arm.set("initial.hinges.shoulder.position", [0.7]).set("bodies.link1.length", 1.5)
+    short = {"end": 0.02}
+    turned = arm.run(time=short, initial={"hinges": {"elbow": {"position": [0.3]}}})
+    assert (turned["shoulder"][0], turned["elbow"][0]) == (0.7, 0.3)
+    # What says its type is a part of its own: nothing of the one before it is left.
+    rigid = {"type": "rigid", "mass": 1, "inertia": [0.1, 0.1, 0.1, 0, 0, 0], "frames": {"tip": {"position": [1, 0, 0]}}}
+    assert "link1.bending_y[1]" not in arm.run(time=short, bodies={"link1": rigid}, outputs={})
+    longer = arm.run(time=short, bodies={"link1": {"length": 2}})
+    assert longer["link1.tip.x"][0] - turned["link1.tip.x"][0] == pytest.approx(0.5 * math.cos(0.7), abs=1e-9)
+
+
 def test_scenes_are_values(slew):
     fast = slew.copy().set("loads.slew.time_scale", 1.2).set("integrator.rtol", 1e-5)
     assert slew.run().t[-1] > fast.run(formulation="ruthless").t[-1]

@@ -263,7 +263,8 @@ class Scene:
         Args:
             progress: called with the time reached and the end [s].
             options: values of the scene for this run alone: ``formulation="exact"``, ``integrator={"name": "rk4",
-                "step": 1e-3}``, ``time={"end": 2}``.
+                "step": 1e-3}``, ``time={"end": 2}``. Dicts change the members that they name, at any depth, and leave the
+                others; one with ``type`` or ``name`` takes the place of what was there.
 
         Raises:
             SceneError: where the scene, with these values, cannot be.
@@ -362,12 +363,18 @@ class Scene:
             return self
         changed = self.copy()
         for path, value in options.items():
-            if isinstance(value, Mapping) and path not in ("formulation", "integrator"):
-                for key, member in value.items():
-                    changed.set(f"{path}.{key}", member)
-            else:
-                changed.set(path, value)
+            _set_members(changed, path, value)
         return changed
+
+
+def _set_members(scene: Scene, path: str, value: Any) -> None:
+    """Sets members one by one where they stand; a part that says what it is takes the place of what was there."""
+    whole = path in ("formulation", "integrator")
+    if isinstance(value, Mapping) and not whole and not {"type", "name"} & value.keys():
+        for key, member in value.items():
+            _set_members(scene, f"{path}.{key}", member)
+    else:
+        scene.set(path, value)
 
 
 def _restored(text: str, name: str, plugins: tuple[str, ...], changes: list[str]) -> Scene:
