@@ -37,9 +37,11 @@ Files files_of(const ImportJob& a) {
   return f;
 }
 
+std::filesystem::path freedoms_of(const ImportJob& a) { return a.job + ".dof"; }
+
 Matrices matrices_of(const ImportJob& a, const Files& f, const Mesh& mesh) {
   if (!f.calculix) return combined(read_abaqus(f.stiffness, mesh), read_abaqus(f.mass, mesh), mesh);
-  const std::filesystem::path freedoms = a.job + ".dof";
+  const std::filesystem::path freedoms = freedoms_of(a);
   return combined(read_calculix(f.stiffness, freedoms), read_calculix(f.mass, freedoms), mesh);
 }
 
@@ -88,6 +90,11 @@ Drawn drawn_as(const Mesh& mesh, const Matrices& matrices, const ReductionOption
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> files_read(const ImportJob& job) {
+  const Files files = files_of(job);
+  return {files.mesh, files.stiffness, files.mass, freedoms_of(job)};
+}
 
 Imported import(const ImportJob& job) {
   const Files files = files_of(job);

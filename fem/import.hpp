@@ -2,6 +2,7 @@
 /// Files of a finite-element program to a modal body: what `withy import` does.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -49,5 +50,7 @@ struct Imported {
 
 /// \throws InputError, std::domain_error where the files do not describe a body that can be reduced.
 Imported import(const ImportJob& job);
+/// The files that it reads. \throws InputError as above
+std::vector<std::filesystem::path> files_read(const ImportJob& job);
 
 }  // namespace withy::fem

@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "withy/study/input_error.hpp"
+
 namespace withy {
 
 OutputFile::OutputFile(std::filesystem::path path, bool append)
@@ -52,13 +54,51 @@ void OutputFile::close() {
 
 void OutputFile::fail() const { throw std::system_error(errno, std::generic_category(), path_.string()); }
 
+namespace {
+
+/// What a name leads to through links, there or not.
+std::filesystem::path target_of(std::filesystem::path file) {
+  constexpr int most_links = 40;
+  std::error_code failed;
+  for (int links = 0; links < most_links && std::filesystem::is_symlink(file, failed); ++links) {
+    const std::filesystem::path next = std::filesystem::read_symlink(file, failed);
+    if (failed) break;
+    file = next.is_absolute() ? next : file.parent_path() / next;
+  }
+  return file;
+}
+
+}  // namespace
+
+Part::Part(const std::filesystem::path& file) : file_(file) {
+  std::error_code ignored;
+  const std::filesystem::file_status there = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_directory(there))
+    throw study::InputError(file.string() + " is a folder; need the name of a file to write");
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
+    path_ = file_;
+    return;
+  }
+  path_ = file_ = target_of(file);
+  path_ += ".part";
+}
+
+Part::~Part() {
+  std::error_code ignored;
+  if (!finished_ && !is_stream()) std::filesystem::remove(path_, ignored);
+}
+
+void Part::finish() {
+  if (!is_stream()) std::filesystem::rename(path_, file_);
+  finished_ = true;
+}
+
 void write_file(const std::filesystem::path& path, const std::function<void(OutputFile&)>& write) {
-  std::filesystem::path part = path;
-  part += ".part";
-  OutputFile file(part);
+  Part part(path);
+  OutputFile file(part.path());
   write(file);
   file.close();
-  std::filesystem::rename(part, path);
+  part.finish();
 }
 
 void write_file(const std::filesystem::path& path, std::string_view text) {
@@ -66,13 +106,12 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
 }
 
 void write_lasting_file(const std::filesystem::path& path, std::string_view text) {
-  std::filesystem::path part = path;
-  part += ".part";
-  OutputFile file(part);
+  Part part(path);
+  OutputFile file(part.path());
   file.write(text);
   file.sync();
   file.close();
-  std::filesystem::rename(part, path);
+  part.finish();
   const int folder = ::open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool synced = folder >= 0 && ::fsync(folder) == 0;
   if (folder >= 0) ::close(folder);

@@ -41,7 +41,29 @@ class OutputFile {
   std::string waiting_;
 };
 
-/// Writes a file whole or not at all: under another name first, then renamed. \throws std::system_error
+/// The place where a file is written before it takes its name, whole or not at all. A link stays: what it leads to is
+/// written. A pipe or a device is written as it is.
+class Part {
+ public:
+  /// \throws study::InputError where the name is that of a folder
+  explicit Part(const std::filesystem::path& file);
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+  /// Removes what was written, but where it has taken its name.
+  ~Part();
+  /// Where to write.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Whether the file is a pipe or a device, which `path` is then, too.
+  [[nodiscard]] bool is_stream() const { return path_ == file_; }
+  /// It takes its name. To be called once it is written and closed. \throws std::system_error
+  void finish();
+
+ private:
+  std::filesystem::path file_, path_;
+  bool finished_ = false;
+};
+
+/// Writes a file by a Part. \throws std::system_error; study::InputError where the name is that of a folder
 void write_file(const std::filesystem::path& path, std::string_view text);
 /// The same of what is written part by part, and need not be in memory as a whole.
 void write_file(const std::filesystem::path& path, const std::function<void(OutputFile&)>& write);

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "withy/results/output_file.hpp"
+#include "withy/scene/document.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy {
@@ -68,7 +69,7 @@ void write_picture(const fs::path& file, std::string_view svg) {
   if (status != 0 || !fs::exists(to.path()))
     throw std::runtime_error(
         fmt::format("{} could not be drawn: rsvg-convert ended with status {}", file.string(), status));
-  fs::rename(to.path(), file);
+  write_file(file, read_bytes(to.path()));
 }
 
 }  // namespace withy

@@ -2,6 +2,7 @@
 
 #include "withy/results/csv_recorder.hpp"
 #include "withy/results/hdf5_recorder.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/results/table_picture.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -44,6 +45,12 @@ PlottedRuns::PlottedRuns(const std::vector<std::string>& given) {
     file.extension() == ".h5" ? read_hdf5(file, *tables_.back()) : read_csv(file, *tables_.back());
     legend_.push_back(name_of(file));
   }
+}
+
+fs::path PlottedRuns::picture(const std::string& given) const {
+  const fs::path out = given.empty() ? files_.front().parent_path() / "plot.svg" : fs::path(given);
+  keep_inputs(out, files_);
+  return out;
 }
 
 std::vector<Panel> PlottedRuns::panels(const std::vector<double>& over) const {

@@ -19,7 +19,9 @@ class PlottedRuns {
   explicit PlottedRuns(const std::vector<std::string>& given);
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }    ///< of columns; may be empty
   [[nodiscard]] const std::vector<std::string>& legend() const { return legend_; }  ///< one a run
-  [[nodiscard]] std::filesystem::path first_folder() const { return files_.front().parent_path(); }
+  /// The file to draw into: as it was given, or where that is empty plot.svg in the first folder.
+  /// \throws study::InputError where it is one of the tables
+  [[nodiscard]] std::filesystem::path picture(const std::string& given) const;
   /// A panel a column over time; or one of all columns over these places [m], as envelope_panel. Empty where nothing
   /// changes. \throws ResultsError where no run has such a column
   [[nodiscard]] std::vector<Panel> panels(const std::vector<double>& over) const;

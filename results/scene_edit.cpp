@@ -7,6 +7,7 @@
 
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/same_content.hpp"
 #include "withy/scene/scene.hpp"
@@ -193,7 +194,8 @@ void write_changed(const SceneValues& scene, const std::vector<study::Change>& c
   if (!same_content(written.root(), wanted.root()))
     throw study::InputError("--write: the text of " + scene.file() +
                             " cannot be edited into this; nothing is written. Change it by hand as the lines say");
-  static_cast<void>(make_scene(written, registry));
+  keep_inputs(file, files_of(make_scene(written, registry)));
+  keep_inputs(file, {scene.file()});
   write_file(file, text);
 }
 

@@ -7,6 +7,7 @@
 
 #include "withy/program/log.hpp"
 #include "withy/program/progress.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/scene/asked_outputs.hpp"
 
 namespace withy::app {
@@ -51,9 +52,10 @@ Plugins::Plugins(const CommonArguments& arguments)
   host_.attach(*registry_);
 }
 
-void check_write(const std::string& file, const SceneArguments& arguments) {
+void check_write(const std::string& file, const SceneArguments& arguments, const std::string& also_read) {
   if (!file.empty() && !arguments.options.overrides.empty())
     throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
+  if (!file.empty()) keep_inputs(file, {arguments.scene, also_read});
 }
 
 SceneValues read_values(const SceneArguments& arguments) {

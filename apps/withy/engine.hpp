@@ -29,8 +29,9 @@ class Plugins {
   std::unique_ptr<Registry> registry_;
 };
 
-/// For commands that write the scene anew, as its file has it. \throws InputError where --set changes it
-void check_write(const std::string& file, const SceneArguments& arguments);
+/// For commands that write the scene anew, as its file has it. \throws InputError where --set changes it, or it would
+/// take the place of what is read
+void check_write(const std::string& file, const SceneArguments& arguments, const std::string& also_read = {});
 
 /// The values of the scene file, as the command line changes them. \throws SceneError, InputError
 SceneValues read_values(const SceneArguments& arguments);

@@ -4,6 +4,7 @@
 #include "withy/results/equilibrium_text.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/output_name.hpp"
 
 namespace withy::app {
 namespace {
@@ -14,6 +15,7 @@ struct EquilibriumArguments : ConfigurationArguments {
 
 ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   const Engine engine(arguments);
+  keep_inputs(arguments.out, files_of(engine.scene(), arguments.state));
   const study::Configuration c = configuration_of(engine, arguments);
   const study::Holding holding = study::read_holding(engine.model(), arguments.lock, arguments.spin);
   const study::Equilibrium found = study::find_equilibrium(c, holding, engine.registry());

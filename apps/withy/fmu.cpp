@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/engine.hpp"
 #include "withy/bindings/fmi/export.hpp"
+#include "withy/results/check_columns.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/output_name.hpp"
 
 namespace withy::app {
 namespace {
@@ -15,16 +16,17 @@ struct FmuArguments : SceneArguments {
   int version = 3;
   std::vector<std::string> kinds{"me", "cs"};
   std::string out;  ///< empty: the scene's name with .fmu
+  bool force = false;
 };
 
 ExitStatus make_fmu(const FmuArguments& a) {
   const Engine engine(a);
+  check_columns(engine.prepared(), a.outputs);
   fmi::Export what;
   what.version = a.version;
   what.model_exchange = std::find(a.kinds.begin(), a.kinds.end(), "me") != a.kinds.end();
   what.co_simulation = std::find(a.kinds.begin(), a.kinds.end(), "cs") != a.kinds.end();
-  what.out = a.out;
-  if (a.out.empty()) what.out = std::filesystem::path(a.scene).filename().replace_extension(".fmu");
+  what.out = output_name(a.out, renamed(a.scene, ".fmu"), a.force, files_of(engine.scene()));
   const fmi::Exported made = fmi::export_fmu(engine.prepared(), a.options, engine.registry(), what);
   const fmi::Variables& v = made.variables;
   const std::size_t outputs = v.states + v.outputs;
@@ -55,6 +57,7 @@ void add_fmu(Options& o, FmuArguments& a) {
   o.list("--kind", a.kinds, "KIND,...", "Model exchange (me), co-simulation (cs), or both; default: both")
       .among({"me", "cs"});
   o.value("--out", a.out, "FILE", "File; default: the scene's name with .fmu, in the working folder");
+  o.flag("--force", a.force, "Replace a file that has the default name");
   o.list("--outputs,--output", a.outputs, "NAME,...", "Outputs to add, as those of withy run");
 }
 

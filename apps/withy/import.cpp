@@ -7,6 +7,7 @@
 #include "withy/fem/import_report.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/output_name.hpp"
 
 namespace withy::app {
 namespace {
@@ -27,17 +28,11 @@ ExitStatus import_model(ImportArguments a) {
   } catch (const std::invalid_argument& e) {
     throw InputError(e.what());
   }
-  const std::string file =
-      a.out.empty() ? std::filesystem::path(a.job).filename().replace_extension(".yaml").string() : a.out;
-  if (!a.force && std::filesystem::exists(file)) throw InputError(file + " is there already; --force replaces it");
+  const std::filesystem::path name = a.out.empty() ? renamed(a.job, ".yaml") : std::filesystem::path(a.out);
+  const std::string file = output_name("", name, a.force, {a.job, a.model.flexible});
   write_file(file, scene.text);
-  if (a.json) {
-    print(json_text(nlohmann::ordered_json{{"file", file}, {"from", scene.from}, {"remarks", scene.remarks}}));
-  } else {
-    std::string text = "read as " + scene.from + "\n";
-    for (const std::string& remark : scene.remarks) text += "* " + remark + "\n";
-    print(text + "written: " + file + "\n");
-  }
+  print(a.json ? json_text(nlohmann::ordered_json{{"file", file}, {"from", scene.from}, {"remarks", scene.remarks}})
+               : "read as " + scene.from + "\n" + written_text(scene.remarks, file));
   return ExitStatus::done;
 }
 
@@ -45,9 +40,13 @@ ExitStatus import_mesh(const ImportArguments& a) {
   if (a.root.empty()) throw InputError("--root is required: the nodes of the mesh that are clamped");
   try {
     const fem::Imported imported = fem::import(a);
-    const std::string file = a.out.empty() ? std::filesystem::path(a.job).filename().string() + ".SID_FEM" : a.out;
+    const auto read = fem::files_read(a);
+    const std::string file =
+        output_name(a.out, std::filesystem::path(a.job).filename().string() + ".SID_FEM", a.force, read);
+    const std::string surface =
+        output_name("", fem::surface_file(file), a.force || !a.out.empty() || imported.drawn.text.empty(), read);
     write_file(file, sid::write(imported.data));
-    if (!imported.drawn.text.empty()) write_file(fem::surface_file(file), imported.drawn.text);
+    if (!imported.drawn.text.empty()) write_file(surface, imported.drawn.text);
     const auto report = fem::import_json(imported, file);
     print(a.json ? json_text(report)
                  : fem::import_text(report) + "\nwritten: " + file + "; in a scene:\n\n" +
@@ -82,7 +81,7 @@ void add_import(Options& o, ImportArguments& a) {
   o.value("--highest", a.highest, "HZ", "Drop modes of the reduced body above this frequency [Hz]").positive();
   o.value("--out", a.out, "FILE",
           "Scene, default: FILE with .yaml; of a mesh Standard Input Data, default: JOB.SID_FEM");
-  o.flag("--force", a.force, "Replace a scene that is there");
+  o.flag("--force", a.force, "Replace a scene that is there, or a file that has the default name");
   add_common(o, a);
 }
 

@@ -1,9 +1,9 @@
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/starting_scenes.hpp"
 #include "withy/study/input_error.hpp"
@@ -32,9 +32,8 @@ const StartingScene& scene_of(const std::string& kind) {
 
 ExitStatus write_new(const NewArguments& arguments) {
   const StartingScene& chosen = scene_of(arguments.kind);
-  const std::string file = arguments.file.empty() ? arguments.kind + ".yaml" : arguments.file;
-  if (std::filesystem::exists(file) && !arguments.force)
-    throw study::InputError(file + " is there already: name another file, or add --force to replace it");
+  const std::string file =
+      output_name("", arguments.file.empty() ? arguments.kind + ".yaml" : arguments.file, arguments.force, {});
   write_file(file, chosen.text);
   print(arguments.json ? json_text({{"file", file}})
                        : file + " is yours to change. Then:\n  withy check " + file + "\n  withy run " + file + '\n');

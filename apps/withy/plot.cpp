@@ -1,4 +1,3 @@
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/command.hpp"
@@ -35,8 +34,7 @@ ExitStatus plot(const PlotArguments& arguments) {
     print(terminal_plot(legend, panels));
     return ExitStatus::done;
   }
-  const std::filesystem::path out =
-      arguments.out.empty() ? runs.first_folder() / "plot.svg" : std::filesystem::path(arguments.out);
+  const std::filesystem::path out = runs.picture(arguments.out);
   write_picture(out, svg_plot(legend.size() == 1 ? legend.front() : "", legend, panels));
   const std::size_t count = panels.size();
   print(arguments.json ? json_text({{"file", out.string()}, {"columns", count}})

@@ -30,7 +30,7 @@ ExitStatus report(const ReportArguments& arguments) {
   }
   ReportContent content;
   for (const std::string& folder : arguments.runs)
-    for (std::string& run : runs_at(folder)) content.runs.push_back(std::move(run));
+    for (std::string& run : runs_at(folder, arguments.out)) content.runs.push_back(std::move(run));
   if (arguments.reference > static_cast<int>(content.runs.size()))
     throw study::InputError("--reference: need a number from 1 to " + std::to_string(content.runs.size()) +
                             ", the count of runs, got " + std::to_string(arguments.reference));
@@ -42,7 +42,7 @@ ExitStatus report(const ReportArguments& arguments) {
   if (out.extension() != ".html" && out.extension() != ".htm")
     throw study::InputError("--out: need a name that ends with .html (a page), .glb (glTF) or .pvd (ParaView), got '" +
                             arguments.out + "'");
-  if (std::filesystem::exists(out) && !arguments.force) static_cast<void>(read_report(out));
+  if (std::filesystem::is_regular_file(out) && !arguments.force) static_cast<void>(read_report(out));
   content.title = title_of_runs(content.runs);
   content.reference = arguments.reference - 1;
   write_report(arguments.out, content);

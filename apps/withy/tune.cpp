@@ -18,7 +18,7 @@ struct TuneArguments : SceneArguments, OutputArguments {
 };
 
 ExitStatus tune(const TuneArguments& arguments) {
-  check_write(arguments.write, arguments);
+  check_write(arguments.write, arguments, arguments.question.data);
   const Engine engine(arguments);
   const std::string title = engine.prepared().title();
   const auto folder =

@@ -8,6 +8,7 @@
 #include "withy/bindings/fmi/zip_file.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/plugins/host/plugin_host.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/sha256.hpp"
 #include "withy/scene/visual.hpp"
@@ -113,6 +114,7 @@ Exported export_fmu(const study::Prepared& prepared, const SceneOptions& options
   Exported made{{what.version, what.model_exchange, what.co_simulation, identifier_of(what.out), {}},
                 variables_of(prepared, registry)};
   made.description.token = token_of(prepared, made.variables);
+  keep_inputs(what.out, files_of(prepared.scene));
   ZipFile zip(what.out);
   zip.add("modelDescription.xml", model_description(made.description, prepared, made.variables));
   zip.add("documentation/index.html", documentation_page(made.description, prepared, made.variables));

@@ -6,19 +6,19 @@
 #include <cerrno>
 #include <system_error>
 
+#include "withy/study/input_error.hpp"
+
 namespace withy::fmi {
 
-ZipFile::ZipFile(std::filesystem::path file) : file_(std::move(file)), part_(file_.string() + ".part") {
+ZipFile::ZipFile(std::filesystem::path file) : file_(std::move(file)), part_(file_) {
+  if (part_.is_stream()) throw study::InputError(file_.string() + " is a pipe or a device; an archive is a file");
   errno = 0;
-  zip_ = zipOpen64(part_.c_str(), APPEND_STATUS_CREATE);
+  zip_ = zipOpen64(part_.path().c_str(), APPEND_STATUS_CREATE);
   expect(zip_ != nullptr);
 }
 
 ZipFile::~ZipFile() {
-  if (zip_ == nullptr) return;
-  zipClose(zip_, nullptr);
-  std::error_code ignored;
-  std::filesystem::remove(part_, ignored);
+  if (zip_ != nullptr) zipClose(zip_, nullptr);
 }
 
 void ZipFile::expect(bool good) const {
@@ -49,13 +49,8 @@ void ZipFile::finish() {
   errno = 0;
   const bool closed = zipClose(zip_, nullptr) == ZIP_OK;
   zip_ = nullptr;
-  if (!closed) {
-    const std::error_code why(errno != 0 ? errno : EIO, std::generic_category());
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
-    throw std::system_error(why, file_.string());
-  }
-  std::filesystem::rename(part_, file_);
+  expect(closed);
+  part_.finish();
 }
 
 }  // namespace withy::fmi

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/results/output_file.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/results/report/gltf.hpp"
 #include "withy/results/report/paraview.hpp"
 #include "withy/results/report/report_page.hpp"
@@ -12,8 +13,9 @@
 
 namespace withy {
 
-std::vector<std::string> runs_at(const std::filesystem::path& given) {
+std::vector<std::string> runs_at(const std::filesystem::path& given, const std::filesystem::path& out) {
   const std::filesystem::path file = std::filesystem::is_directory(given) ? given / report_name : given;
+  keep_inputs(out, {file});
   if (std::filesystem::exists(file)) return read_report(file);
   if (!std::filesystem::exists(given)) throw study::InputError("there is no folder '" + given.string() + "'");
   throw ResultsError(given.string() + " holds no " + report_name +

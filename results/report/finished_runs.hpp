@@ -9,8 +9,9 @@
 namespace withy {
 
 /// The runs on the page of a folder, or on the page itself: what RunReport::write wrote of each.
-/// \throws study::InputError where there is no such folder; ResultsError where it holds no page
-std::vector<std::string> runs_at(const std::filesystem::path& given);
+/// \param out the file to be written
+/// \throws study::InputError where there is no such folder, or the page is `out`; ResultsError where it holds no page
+std::vector<std::string> runs_at(const std::filesystem::path& given, const std::filesystem::path& out);
 /// Their titles, each once.
 std::string title_of_runs(const std::vector<std::string>& runs);
 /// Writes the motion of runs where the name ends with .glb (glTF) or .pvd (a series for ParaView); false where it does

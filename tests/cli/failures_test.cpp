@@ -52,6 +52,63 @@ TEST(Failures, AnAccuracyThatCannotBeHadIsRefusedAndWhatCanIsRun) {
   EXPECT_THAT(inspected.out, HasSubstr("without arm.bending_y[10] the condition is"));
 }
 
+TEST(Failures, NoCommandReplacesWhatItReadsNorAFileThatNobodyNamed) {
+  const Folder folder;
+  const std::string scene = folder.read("scenes/pendulum.yaml");
+  folder.write("s.yaml", scene);
+  folder.write("state.json", "{}\n");
+  fs::create_symlink("s.yaml", folder.path() / "link.yaml");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"export", "s.yaml", "--out", "s.yaml"},
+        {"export", "s.yaml", "--out", "link.yaml"},
+        {"export", "link.yaml", "--out", "./s.yaml", "--force"},
+        {"fmu", "s.yaml", "--out", "link.yaml"},
+        {"equilibrium", "s.yaml", "--out", "s.yaml"},
+        {"equilibrium", "s.yaml", "--at", "state.json", "--out", "state.json"},
+        {"advise", "s.yaml", "--accuracy", "5%", "--write", "link.yaml"}}) {
+    const Finished f = withy(folder, command);
+    EXPECT_EQ(f.status, 2) << command[0];
+    EXPECT_THAT(f.err, HasSubstr("read by this command and is not replaced; name another file")) << command[0];
+    EXPECT_EQ(folder.read("s.yaml"), scene);
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "link.yaml"));
+  }
+  EXPECT_EQ(folder.read("state.json"), "{}\n");
+  folder.write("s.urdf", "mine");
+  folder.write("s.fmu", "mine");
+  for (const std::string command : {"export", "fmu"}) {
+    const std::string file = command == "fmu" ? "s.fmu" : "s.urdf";
+    const Finished f = withy(folder, {command, "s.yaml"});
+    EXPECT_EQ(f.status, 2);
+    EXPECT_THAT(f.err, HasSubstr(file + " is there already: name another file, or add --force to replace it"));
+    EXPECT_EQ(folder.read(file), "mine");
+    EXPECT_EQ(withy(folder, {command, "s.yaml", "--force"}).status, 0);
+    EXPECT_NE(folder.read(file), "mine");
+    EXPECT_EQ(withy(folder, {command, "s.yaml", "--out", file}).status, 0);
+  }
+  // What was imported is not lost to the way back.
+  fs::copy_file(folder.path() / "scenes/models/double-pendulum.urdf", folder.path() / "double-pendulum.urdf");
+  const std::string original = folder.read("double-pendulum.urdf");
+  EXPECT_EQ(withy(folder, {"import", "double-pendulum.urdf"}).status, 0);
+  EXPECT_EQ(withy(folder, {"export", "double-pendulum.yaml"}).status, 2);
+  EXPECT_EQ(withy(folder, {"import", "double-pendulum.urdf", "--out", "double-pendulum.urdf", "--force"}).status, 2);
+  EXPECT_EQ(folder.read("double-pendulum.urdf"), original);
+  // A folder is said to be one, and a pipe is written.
+  const Finished into = withy(folder, {"export", "s.yaml", "--out", "scenes"});
+  EXPECT_EQ(into.status, 2);
+  EXPECT_THAT(into.err, HasSubstr("scenes is a folder; need the name of a file to write"));
+  EXPECT_FALSE(fs::exists(folder.path() / "scenes.part"));
+  EXPECT_THAT(withy(folder, {"export", "s.yaml", "--out", "/dev/stdout"}).out, HasSubstr("<robot"));
+}
+
+TEST(Failures, OutputsOfAnFmuThatNobodyKnowsAreNamedWithTheNearest) {
+  const Folder folder;
+  const Finished f =
+      withy(folder, {"fmu", "scenes/commanded-arm.yaml", "--output", "shoulder.efort", "--out", "q.fmu"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("did you mean 'shoulder.effort'?"));
+  EXPECT_FALSE(fs::exists(folder.path() / "q.fmu"));
+}
+
 TEST(Failures, AFullDiskIsAnErrorWhereverItIsMet) {
   const Folder folder;
   fs::create_directory(folder.path() / "out");

@@ -1,15 +1,23 @@
 /// \file
 /// A folder holds one result, written by one process; a fingerprint changes with all that a result comes from.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
 
 #include "scratch.hpp"
 #include "withy/results/kept_results.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/results_folder.hpp"
+#include "withy/study/input_error.hpp"
 
 namespace withy {
 namespace {
@@ -184,6 +192,65 @@ TEST(FolderSuffix, TellsSettingsApartInANameForAFolder) {
   EXPECT_THAT(map, testing::MatchesRegex("-set-[0-9a-f]{8}"));
   EXPECT_NE(long_one, map);
   EXPECT_NE(folder_suffix({"name=../../x"}).find("set-"), std::string::npos);
+}
+
+TEST(OutputFile, GoesThroughLinksAndIntoPipesAndLeavesNothingHalfWritten) {
+  namespace fs = std::filesystem;
+  const Scratch scratch;
+  scratch.write("kept/there.txt", "old");
+  fs::create_symlink(scratch / "kept/there.txt", scratch / "link.txt");
+  fs::create_symlink("kept/new.txt", scratch / "nowhere.txt");
+  write_file(scratch / "link.txt", "new");
+  write_file(scratch / "nowhere.txt", "first");
+  EXPECT_TRUE(fs::is_symlink(scratch / "link.txt"));
+  EXPECT_TRUE(fs::is_symlink(scratch / "nowhere.txt"));
+  EXPECT_EQ(scratch.read("kept/there.txt"), "new");
+  EXPECT_EQ(scratch.read("kept/new.txt"), "first");
+
+  const fs::path pipe = scratch / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  write_file(pipe, "through");
+  std::string text(16, '\0');
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(::read(reader, text.data(), text.size()), 0)));
+  ::close(reader);
+  EXPECT_EQ(text, "through");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+
+  fs::create_directory(scratch / "folder");
+  try {
+    write_file(scratch / "folder", "text");
+    FAIL();
+  } catch (const study::InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("folder is a folder; need the name of a file"));
+  }
+  const auto broken = [](OutputFile& file) {
+    file.write("half");
+    throw std::domain_error("no more");
+  };
+  EXPECT_THROW(write_file(scratch / "broken.txt", broken), std::domain_error);
+  for (const char* part : {"broken.txt", "broken.txt.part", "folder.part", "kept/there.txt.part", "pipe.part"})
+    EXPECT_FALSE(fs::exists(scratch / part)) << part;
+}
+
+TEST(OutputFile, IsNoneThatTheSameCommandReadsByWhateverName) {
+  namespace fs = std::filesystem;
+  const Scratch scratch;
+  scratch.write("scene.yaml", "a");
+  scratch.write("other.yaml", "b");
+  fs::create_symlink("scene.yaml", scratch / "soft.yaml");
+  fs::create_hard_link(scratch / "scene.yaml", scratch / "hard.yaml");
+  for (const char* name : {"scene.yaml", "soft.yaml", "hard.yaml"}) {
+    EXPECT_THROW(keep_inputs(scratch / name, {scratch / "other.yaml", scratch / "scene.yaml"}), study::InputError);
+    EXPECT_THROW(static_cast<void>(output_name((scratch / name).string(), "", true, {scratch / "scene.yaml"})),
+                 study::InputError);
+  }
+  EXPECT_NO_THROW(keep_inputs(scratch / "new.yaml", {scratch / "scene.yaml", ""}));
+  EXPECT_NO_THROW(keep_inputs("/dev/null", {"/dev/null"}));
+  // A name that nobody gave takes the place of nothing; one that was given, or --force, does.
+  EXPECT_THROW(static_cast<void>(output_name("", scratch / "other.yaml", false, {})), study::InputError);
+  EXPECT_EQ(output_name("", scratch / "other.yaml", true, {}), (scratch / "other.yaml").string());
+  EXPECT_EQ(output_name((scratch / "other.yaml").string(), "", false, {}), (scratch / "other.yaml").string());
 }
 
 }  // namespace
