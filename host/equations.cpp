@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "withy/core/equations/lane_equations.hpp"
+#include "withy/core/model/acting_event.hpp"
 #include "withy/core/model/columns.hpp"
-#include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
@@ -49,13 +49,13 @@ std::vector<Port> state_ports(const Model& model) {
 std::shared_ptr<const study::Prepared> continuous(const Scene& scene, const std::string& formulation) {
   std::shared_ptr<const study::Prepared> prepared =
       formulation.empty() ? scene.prepare() : Scene(scene).formulation(formulation).prepare();
-  if (EventBook(prepared->model()).any())
+  if (const std::string acting = acting_event(prepared->model()); !acting.empty())
     throw study::InputError(
-        fmt::format("{}: /events: an event acts on the motion, which an integrator of your own does not know; step a "
-                    "Simulation, or leave the event out",
-                    prepared->scene.file));
+        fmt::format("{}: /events/{}: an event acts on the motion, which an integrator of your own does not know; step "
+                    "a Simulation, or leave the event out",
+                    prepared->scene.file, acting));
   for (const LoadNode& load : prepared->model().loads())
-    if (load.slot.count > 0 && load.load->input() == nullptr)
+    if (load.slot.count > 0 && load.load->input() == nullptr && load.name != name_of_event_states)
       throw study::InputError(
           fmt::format("{}: load '{}' changes at instants (sampled, or a relay), which an integrator of your own does "
                       "not know; step "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "withy/core/model/held_numbers.hpp"
 #include "withy/core/model/hosted_motion.hpp"
@@ -51,6 +52,16 @@ std::vector<double> jump_times(const Model& model) {
 
 double rounding(double t) { return 1e-12 * std::max(1.0, std::abs(t)); }
 
+/// Which events of the scene watch a number, among EventActions::watched.
+std::vector<std::size_t> watching(const Scene& scene) {
+  std::vector<std::size_t> all(scene.events.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const EventBook book(*scene.model);
+  for (std::size_t i = 0; book.any() && i < book.plan().events.size(); ++i)
+    if (book.plan().events[i].when == ActingEvent::When::passes) all.push_back(scene.events.size() + i);
+  return all;
+}
+
 int sign(double x) { return (x > 0) - (x < 0); }
 
 }  // namespace
@@ -68,6 +79,8 @@ Dynamics::Dynamics(std::shared_ptr<const study::Prepared> prepared, double t)
       y_dot_(state_.y.size()),
       jacobian_(states_ * states_),
       clocks_(prepared_->model(), equations_),
+      events_(prepared_->model(), equations_, prepared_->scene.events),
+      looked_for_(watching(prepared_->scene)),
       zeros_(prepared_->model(), prepared_->scene.events, state_),
       jumps_(jump_times(prepared_->model())),
       signs_(indicator_count(prepared_->scene)),
@@ -281,7 +294,18 @@ void Dynamics::read_switches() {
                      y.subspan(slot.first, slot.count), std::span(values_).subspan(at, part.switches()));
     at += part.switches();
   }
-  for (const RunEvent& event : prepared_->scene.events) values_[at++] = event.function(state.time, y);
+  for (const std::size_t event : looked_for_) values_[at++] = events_.watched()[event].function(state.time, y);
+  // What does not look has passed nothing when it looks again.
+  for (std::size_t f = 0; f < signs_.size(); ++f)
+    if (is_over(f)) signs_[f] = 0;
+}
+
+/// Whether an indicator is that of an event that has happened, once or for now.
+bool Dynamics::is_over(std::size_t indicator) const {
+  const std::size_t switches = signs_.size() - looked_for_.size();
+  if (indicator < switches) return false;
+  const std::size_t event = looked_for_[indicator - switches];
+  return events_.acts(event) && events_.over(event, state_);
 }
 
 /// What is due at the state's time has been dealt with: the next instant. A host lands up to rounding of its own.
@@ -289,7 +313,8 @@ double Dynamics::next_instant() {
   const auto jump = std::upper_bound(jumps_.begin(), jumps_.end(), state_.time + rounding(state_.time));
   jump_ = jump == jumps_.end() ? infinity : *jump;
   seen_is_now_ = false;
-  return std::min(jump_, clocks_.next());
+  event_due_ = events_.next(state_);
+  return std::min({jump_, clocks_.next(), event_due_});
 }
 
 State Dynamics::start() const {
@@ -316,6 +341,7 @@ EventUpdate Dynamics::begin() {
 /// Acts on the indicators that have changed their signs. \returns whether a load has switched
 bool Dynamics::switch_where_passed(EventUpdate& update) {
   bool switched = false;
+  std::vector<std::size_t> happened;
   read_switches();
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     const int now = sign(values_[f]);
@@ -328,11 +354,37 @@ bool Dynamics::switch_where_passed(EventUpdate& update) {
       switched = true;
       changed();
     } else {
-      const RunEvent& event = zeros_.event(f);
-      if (event.direction == 0 || event.direction == now) update.terminate = update.terminate || event.stops;
+      const std::size_t index = looked_for_[f + looked_for_.size() - signs_.size()];
+      const RunEvent& event = events_.watched()[index];
+      if (event.direction != 0 && event.direction != now) continue;
+      if (events_.acts(index))
+        happened.push_back(index);
+      else
+        update.terminate = update.terminate || event.stops;
     }
   }
+  if (!happened.empty()) happen(happened, update);
   return switched;
+}
+
+/// Notes that events happen now, and what comes after them.
+void Dynamics::happen(std::span<const std::size_t> events, EventUpdate& update) {
+  const EventActions::Done& done = events_.act(state_, events);
+  if (done.crowded)
+    throw Discarded("t = " + brief(state_.time) + " s: events follow each other without time between them");
+  update.terminate = update.terminate || done.stops;
+  changed();
+}
+
+/// The same of those that happen at a time, whether or not a host lands on it to rounding.
+void Dynamics::happen_where_due(EventUpdate& update) {
+  const double now = state_.time;
+  while (event_due_ <= now + rounding(now)) {
+    state_.time = event_due_;
+    happen({}, update);
+    event_due_ = events_.next(state_);
+  }
+  state_.time = now;
 }
 
 EventUpdate Dynamics::update_discrete() {
@@ -346,9 +398,11 @@ EventUpdate Dynamics::update_discrete() {
     state_.time = now;
     changed();
   }
+  happen_where_due(update);
   update.next = next_instant();
   changed();
   update.again = switch_where_passed(update);
+  update.next = next_instant();  // of what has happened just now, too
   return update;
 }
 
@@ -359,6 +413,7 @@ void Dynamics::remember(Memory& memory) {
   double instant = clocks_.next();
   memory(instant);
   memory(jump_);
+  memory(event_due_);
   if (!memory.reading()) return;
   // Clocks stand before their next instant, also where the state has passed it without an update.
   if (std::isfinite(instant)) clocks_.go_on_with(instant);

@@ -11,6 +11,7 @@
 
 #include "withy/bindings/fmi/variables.hpp"
 #include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/results/result_columns.hpp"
 
@@ -97,6 +98,9 @@ class Dynamics {
   State moved(double h, std::span<const double> along_states, std::span<const std::size_t> inputs,
               std::span<const double> along_inputs);
   bool switch_where_passed(EventUpdate& update);
+  void happen(std::span<const std::size_t> events, EventUpdate& update);
+  void happen_where_due(EventUpdate& update);
+  [[nodiscard]] bool is_over(std::size_t indicator) const;
   void read_switches();
 
   std::shared_ptr<const study::Prepared> prepared_;
@@ -111,6 +115,9 @@ class Dynamics {
   bool seen_is_now_ = false, derivatives_are_now_ = false, jacobian_is_now_ = false;
   const std::vector<double>* row_ = nullptr;  ///< of the table at the present state; null: not found yet
   Clocks clocks_;
+  EventActions events_;
+  std::vector<std::size_t> looked_for_;  ///< of its events those that watch a number, which are indicators
+  double event_due_ = 0;                 ///< the next time [s] at which an event happens by itself
   ZeroWatch zeros_;
   std::vector<double> jumps_;  ///< times [s] of discontinuities, increasing
   double jump_ = 0;            ///< the next one [s]; what jumps there does so when discrete states are updated

@@ -6,7 +6,8 @@
 #include <set>
 
 #include "withy/bindings/fmi/scene_numbers.hpp"
-#include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/acting_event.hpp"
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/results/result_columns.hpp"
@@ -103,6 +104,8 @@ std::size_t indicator_count(const Scene& scene) {
   std::size_t count = scene.events.size();
   for (const LoadSlot& slot : scene.model->layout().discrete_slots)
     count += scene.model->loads()[slot.load].load->discrete()->switches();
+  if (const EventBook book(*scene.model); book.any())
+    for (const ActingEvent& event : book.plan().events) count += event.when == ActingEvent::When::passes ? 1 : 0;
   return count;
 }
 
@@ -112,9 +115,11 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry) {
     throw study::InputError(file +
                             ": /formulation: got 'auto', which changes the equations along a run; an FMU needs one "
                             "formulation by name");
-  if (EventBook(prepared.model()).any())
+  if (const std::string acting = acting_event(prepared.model()); !acting.empty())
     throw study::InputError(
-        file + ": /events: an event acts on the motion, which an FMU cannot carry; leave it to the importer");
+        fmt::format("{}: /events/{}: an event acts on the motion, which an FMU cannot carry; leave "
+                    "it to the importer",
+                    file, acting));
   Variables v;
   v.all.push_back({Kind::time, 0, "t", "s", "time"});
   add_states(v, prepared.model(), prepared.scene.initial);

@@ -60,7 +60,7 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry);
 /// Tells one FMU from another: a UUID made of the scene with its settings, the files it names and the variables.
 std::string token_of(const study::Prepared& prepared, const Variables& variables);
 
-/// Count of event indicators: switching functions of loads, then the scene's events.
+/// Count of event indicators: switching functions of loads, then the scene's events that watch a number.
 std::size_t indicator_count(const Scene& scene);
 
 }  // namespace withy::fmi

@@ -168,6 +168,9 @@ TEST(Description, WhatCannotBeAnFmuIsRefusedWithItsReason) {
   std::string text = busy_arm;
   text.replace(text.find("torque: {"), 6, "axle");
   EXPECT_NE(refused(host::Scene::parse(library(), text)).find("would be called 'axle'"), std::string::npos);
+  host::Scene acting = host::Scene::parse(library(), busy_arm);
+  acting.set("events.latch", "{hinge: axle, value: 0.1, do: {lock: axle}}");
+  EXPECT_NE(refused(acting).find("/events/latch: an event acts on the motion"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(scratch() / "refused.fmu"));
 }
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "withy/host/simulation.hpp"
 #include "withy/tests/fmi/same_as_run.hpp"
@@ -145,6 +147,42 @@ TEST(Agreement, ModelExchangeKeepsTheClocksOfSampledControllersAndEndsAtTheScene
   EXPECT_NEAR(last, simulation.time(), 1e-6);
   EXPECT_EQ(terminated, fmi2True);
   EXPECT_NE(stepped.heard.last.find("event 'halt'"), std::string::npos);
+}
+
+/// Events that only report, or end the run, act on nothing: FMUs look for all kinds of them.
+TEST(Agreement, EventsThatDoNothingAreLookedForInBothKinds) {
+  const std::string watched = R"(
+  far: {signal: reach.x, value: 0.7, direction: down}
+  again: {signal: axle.rate, value: 0.2, delay: 0.01, repeat: true}
+  timed: {at: 0.15}
+)";
+  const auto ended_by = [&](const std::string& name, const std::string& last) {
+    std::string text = busy_arm + watched + last + "outputs: {reach: {type: frame, of: boom.tip, in: world}}\n";
+    text.erase(text.find("  halt:"), text.find("far:") - text.find("  halt:") - 2);
+    const std::filesystem::path file = scratch() / (name + ".yaml");
+    std::ofstream(file) << text;
+    const Unpacked& fmu = exported(file.string(), 2);
+    host::Scene scene = host::Scene::read(library(), file.string());
+    host::Simulation simulation(scene.set("integrator.rtol", 1e-11).set("integrator.atol", 1e-12));
+    EXPECT_FALSE(simulation.advance_to(1)) << name;
+    Instance2 exchanged(fmu, fmi2ModelExchange);
+    exchanged.initialize();
+    Integration integration(exchanged, fmu.states.size(), indicator_count(fmu));
+    integration.to(1, 2e-4);
+    EXPECT_TRUE(integration.terminated) << name;
+    EXPECT_NEAR(integration.time(), simulation.time(), 1e-6) << name;
+    Instance2 stepped(fmu, fmi2CoSimulation);
+    stepped.initialize();
+    EXPECT_EQ(stepped.fmi.DoStep(stepped.c, 0, 1, fmi2True), fmi2Discard);
+    double end = 0;
+    EXPECT_EQ(stepped.fmi.GetRealStatus(stepped.c, fmi2LastSuccessfulTime, &end), fmi2OK);
+    EXPECT_NEAR(end, simulation.time(), 1e-6) << name;
+    EXPECT_NE(stepped.heard.last.find("event '" + name + "'"), std::string::npos) << stepped.heard.last;
+  };
+  ended_by("passed", "  passed: {signal: axle.rate, value: 0.3, stop: true}\n");
+  ended_by("late", "  late: {hinge: axle, value: 0.05, delay: 0.05, stop: true}\n");
+  ended_by("clock", "  clock: {at: 0.4, stop: true}\n");
+  ended_by("after", "  first: {hinge: axle, value: 0.05}\n  after: {after: first, delay: 0.03, stop: true}\n");
 }
 
 }  // namespace withy::test

@@ -182,6 +182,17 @@ TEST(HostedEquations, refuse_what_they_do_not_know) {
   } catch (const std::runtime_error& e) {
     EXPECT_THAT(e.what(), HasSubstr("load 'hold' changes at instants"));
   }
+  // An event that only reports acts on nothing, whatever it watches.
+  Scene watched = smooth_arm();
+  watched.set("events.fast", "{signal: axle.rate, value: 0.1, repeat: true}").set("events.timed", "{at: 0.2}");
+  EXPECT_EQ(Equations(watched).size(), Equations(smooth_arm()).size());
+  watched.set("events.latch", "{hinge: axle, value: 0.1, do: {lock: axle}}");
+  try {
+    const Equations acted(watched);
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("/events/latch: an event acts on the motion"));
+  }
   Equations equations(smooth_arm());
   std::vector<double> y = equations.y0(), y_dot(y.size() - 1);
   EXPECT_THROW(static_cast<void>(equations.derivatives(0, y, y_dot)), std::invalid_argument);
