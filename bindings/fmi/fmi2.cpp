@@ -78,9 +78,10 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, co
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerated, fmi2Real tolerance, fmi2Real start,
-                               fmi2Boolean /*stopTimeDefined*/, fmi2Real /*stopTime*/) {
+                               fmi2Boolean stops, fmi2Real stop) {
   return call(c, "fmi2SetupExperiment", static_cast<unsigned>(Mode::instantiated), In::both, [&](Component& i) {
-    i.set_experiment(tolerated != fmi2False ? std::optional(tolerance) : std::nullopt, start);
+    i.set_experiment(tolerated != fmi2False ? std::optional(tolerance) : std::nullopt, start,
+                     stops != fmi2False ? std::optional(stop) : std::nullopt);
   });
 }
 
@@ -175,8 +176,10 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
 }
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return call(c, "fmi2EnterEventMode", static_cast<unsigned>(Mode::continuous), In::model_exchange,
-              [](Component& i) { i.enter(Mode::event); });
+  return call(c, "fmi2EnterEventMode", static_cast<unsigned>(Mode::continuous), In::model_exchange, [](Component& i) {
+    i.check_stop(i.dynamics().time());
+    i.enter(Mode::event);
+  });
 }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
@@ -199,8 +202,9 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean /*noSetFMUStatePriorToCurrentPoint*/,
                                        fmi2Boolean* event, fmi2Boolean* terminate) {
   return call(c, "fmi2CompletedIntegratorStep", static_cast<unsigned>(Mode::continuous), In::model_exchange,
-              [&](Component&) {
+              [&](Component& i) {
                 need(event != nullptr && terminate != nullptr, "need places for both answers");
+                i.check_stop(i.dynamics().time());
                 *event = *terminate = fmi2False;
               });
 }
@@ -208,6 +212,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean /*noSetFMUSt
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
   return call(c, "fmi2SetTime", Mode::event | Mode::continuous, In::model_exchange, [&](Component& i) {
     need(std::isfinite(time), "need a finite time");
+    if (i.is_in(static_cast<unsigned>(Mode::event))) i.check_stop(time);  // integrators may look beyond
     i.dynamics().set_time(time);
   });
 }

@@ -79,10 +79,11 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count, con
 }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerated, fmi3Float64 tolerance, fmi3Float64 start,
-                                       fmi3Boolean /*stopTimeDefined*/, fmi3Float64 /*stopTime*/) {
+                                       fmi3Boolean stops, fmi3Float64 stop) {
   return call3(c, "fmi3EnterInitializationMode", static_cast<unsigned>(Mode::instantiated), In::both,
                [&](Instance3& i) {
-                 i.set_experiment(tolerated ? std::optional(tolerance) : std::nullopt, start);
+                 i.set_experiment(tolerated ? std::optional(tolerance) : std::nullopt, start,
+                                  stops ? std::optional(stop) : std::nullopt);
                  i.enter_initialization();
                });
 }
@@ -93,8 +94,10 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
 }
 
 fmi3Status fmi3EnterEventMode(fmi3Instance c) {
-  return call3(c, "fmi3EnterEventMode", static_cast<unsigned>(Mode::continuous), In::model_exchange,
-               [](Instance3& i) { i.enter(Mode::event); });
+  return call3(c, "fmi3EnterEventMode", static_cast<unsigned>(Mode::continuous), In::model_exchange, [](Instance3& i) {
+    i.check_stop(i.dynamics().time());
+    i.enter(Mode::event);
+  });
 }
 
 fmi3Status fmi3Terminate(fmi3Instance c) {
@@ -203,8 +206,9 @@ fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) {
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean /*noSetFMUStatePriorToCurrentPoint*/,
                                        fmi3Boolean* event, fmi3Boolean* terminate) {
   return call3(c, "fmi3CompletedIntegratorStep", static_cast<unsigned>(Mode::continuous), In::model_exchange,
-               [&](Instance3&) {
+               [&](Instance3& i) {
                  need(event != nullptr && terminate != nullptr, "need places for both answers");
+                 i.check_stop(i.dynamics().time());
                  *event = *terminate = false;
                });
 }
@@ -212,6 +216,7 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean /*noSetFMUSta
 fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 time) {
   return call3(c, "fmi3SetTime", Mode::event | Mode::continuous, In::model_exchange, [&](Instance3& i) {
     need(std::isfinite(time), "need a finite time");
+    if (i.is_in(static_cast<unsigned>(Mode::event))) i.check_stop(time);  // integrators may look beyond
     i.dynamics().set_time(time);
   });
 }

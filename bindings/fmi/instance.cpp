@@ -24,6 +24,9 @@ Registry& registry() {
   return plugins;
 }
 
+/// Two times of a host are one where they differ by less, of 1 s or of the greater.
+constexpr double same_time = 1e-9;
+
 /// "gravity" of "gravity.1"; empty where the parameter is no element of a vector.
 std::string_view vector_of(std::string_view name) {
   const std::size_t dot = name.rfind('.');
@@ -93,18 +96,30 @@ void Instance::reset() {
   is_started_.assign(starts_.size(), 0);
   is_input_set_.assign(inputs_.size(), 0);
   tolerance_.reset();
+  stop_.reset();
   start_ = dynamics_->prepared().scene.initial.time;
   session_.reset();
   stale_ = true;
   mode_ = Mode::instantiated;
 }
 
-void Instance::set_experiment(std::optional<double> tolerance, double start) {
+void Instance::set_experiment(std::optional<double> tolerance, double start, std::optional<double> stop) {
   if (!std::isfinite(start) || (tolerance && !(*tolerance > 0 && std::isfinite(*tolerance))))
     throw std::invalid_argument("the start time is to be finite, a tolerance finite and above 0");
+  if (stop && !(*stop >= start))
+    throw std::invalid_argument("the stop time " + brief(*stop) + " s lies before the start time " + brief(start) +
+                                " s");
   stale_ = stale_ || start != start_ || tolerance != tolerance_;
   start_ = start;
+  stop_ = stop;
   tolerance_ = tolerance;
+}
+
+void Instance::check_stop(double time) const {
+  // Hosts add up their steps.
+  if (stop_ && time > *stop_ + same_time * std::max(1.0, std::abs(*stop_)))
+    throw std::invalid_argument("the time " + brief(time) + " s lies beyond the stop time that was set, " +
+                                brief(*stop_) + " s");
 }
 
 /// The scene with the parameters and the tolerance that were set.
@@ -371,9 +386,10 @@ void Instance::set_continuous(std::span<const double> x) {
 StepEnd Instance::step(double from, double length, const BetweenSteps& between) {
   const double now = session_->state().time;
   if (!std::isfinite(from) || !std::isfinite(length) || length < 0 ||
-      std::abs(from - now) > 1e-9 * std::max(1.0, std::abs(now)))
+      std::abs(from - now) > same_time * std::max(1.0, std::abs(now)))
     throw std::invalid_argument("a step of " + brief(length) + " s from " + brief(from) +
                                 " s; need one of at least 0 s from where the FMU stands, " + brief(now) + " s");
+  check_stop(from + length);
   const double target = std::max(now, from + length);
   step_began_ = now;
   early_.reset();

@@ -84,8 +84,11 @@ class Instance {
   Log& log() { return log_; }
   void say(Status status, const char* category, const std::string& message) const;
 
-  /// Takes effect when initialization begins. \throws std::invalid_argument where a number is not finite.
-  void set_experiment(std::optional<double> tolerance, double start);
+  /// Takes effect when initialization begins. \throws std::invalid_argument where a number is not finite, or the stop
+  /// lies before the start.
+  void set_experiment(std::optional<double> tolerance, double start, std::optional<double> stop);
+  /// \throws std::invalid_argument where the simulation would go to a time [s] beyond the host's own stop time
+  void check_stop(double time) const;
   void enter_initialization();
   void exit_initialization();
   void enter(Mode mode) { mode_ = mode; }
@@ -148,6 +151,7 @@ class Instance {
   Mode mode_ = Mode::instantiated;
   std::optional<double> tolerance_;
   double start_ = 0;
+  std::optional<double> stop_;  ///< [s]; nothing: the host has not said
   std::vector<double> parameters_;
   std::vector<double> starts_;  ///< of states, where `is_started_`
   std::vector<char> is_started_;

@@ -28,6 +28,11 @@ void Instance::remember(Memory& memory) {
   memory(tolerated);
   memory(tolerance);
   memory(start);
+  bool ends = stop_.has_value();
+  double stop = stop_.value_or(0);
+  memory(ends);
+  memory(stop);
+  if (memory.reading()) stop_ = ends ? std::optional(stop) : std::nullopt;
   memory(parameters);
   memory(starts_);
   memory(is_started_);

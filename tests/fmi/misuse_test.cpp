@@ -1,4 +1,6 @@
 // Handles, resources and parameters that cannot be: no instance, or a sentence that says what is wrong.
+#include <gmock/gmock.h>
+
 #include "withy/tests/fmi/importer.hpp"
 
 namespace withy::test {
@@ -49,6 +51,47 @@ TEST(Misuse, ASentenceSaysWhatIsWrongAndParametersThatCannotBeAreReportedByTheir
   EXPECT_EQ(i.fmi.DoStep(i.c, 0.5, 0.1, 1), fmi2Error);
   EXPECT_EQ(i.fmi.GetDerivatives(i.c, nullptr, 0), fmi2Error);
   EXPECT_EQ(i.heard.last, "fmi2GetDerivatives: is of model exchange; the instance is of co-simulation");
+}
+
+/// Past a stop time that the host has set there is an error, and the instance stands where it was; integrators may look
+/// beyond it.
+TEST(Misuse, NoStepGoesBeyondTheStopTimeOfTheHost) {
+  const Unpacked &two = exported(smooth_arm_file(), 2), &three = exported(smooth_arm_file(), 3);
+  Instance2 stepped(two, fmi2CoSimulation);
+  EXPECT_EQ(stepped.fmi.SetupExperiment(stepped.c, fmi2False, 0, 0.5, fmi2True, 0.1), fmi2Error);
+  EXPECT_THAT(stepped.heard.last, testing::HasSubstr("stop time 0.1 s lies before the start time 0.5 s"));
+  EXPECT_EQ(stepped.fmi.SetupExperiment(stepped.c, fmi2False, 0, 0, fmi2True, 0.3), fmi2OK);
+  EXPECT_EQ(stepped.fmi.EnterInitializationMode(stepped.c), fmi2OK);
+  EXPECT_EQ(stepped.fmi.ExitInitializationMode(stepped.c), fmi2OK);
+  double t = 0;
+  for (int i = 0; i < 3; ++i, t += 0.1) EXPECT_EQ(stepped.fmi.DoStep(stepped.c, t, 0.1, fmi2True), fmi2OK);
+  EXPECT_GT(t, 0.3);  // by rounding, which is none of the host's
+  const double there = stepped.get(two.reference("axle"));
+  EXPECT_EQ(stepped.fmi.DoStep(stepped.c, t, 0.1, fmi2True), fmi2Error);
+  EXPECT_THAT(stepped.heard.last, testing::HasSubstr("lies beyond the stop time that was set, 0.3 s"));
+  EXPECT_EQ(stepped.get(two.reference("axle")), there);
+
+  Instance3 all(three, true);
+  EXPECT_EQ(all.fmi.EnterInitializationMode(all.c, false, 0, 0, true, 0.3), fmi3OK);
+  EXPECT_EQ(all.fmi.ExitInitializationMode(all.c), fmi3OK);
+  bool event = false, terminate = false, early = false;
+  EXPECT_EQ(all.fmi.DoStep(all.c, 0, 0.31, true, &event, &terminate, &early, &t), fmi3Error);
+  EXPECT_EQ(all.fmi.DoStep(all.c, 0, 0.3, true, &event, &terminate, &early, &t), fmi3OK);
+
+  Instance2 exchanged(two, fmi2ModelExchange);
+  EXPECT_EQ(exchanged.fmi.SetupExperiment(exchanged.c, fmi2False, 0, 0, fmi2True, 0.3), fmi2OK);
+  EXPECT_EQ(exchanged.fmi.EnterInitializationMode(exchanged.c), fmi2OK);
+  EXPECT_EQ(exchanged.fmi.ExitInitializationMode(exchanged.c), fmi2OK);
+  EXPECT_EQ(exchanged.fmi.SetTime(exchanged.c, 0.4), fmi2Error);
+  EXPECT_EQ(exchanged.fmi.EnterContinuousTimeMode(exchanged.c), fmi2OK);
+  EXPECT_EQ(exchanged.fmi.SetTime(exchanged.c, 0.4), fmi2OK);
+  std::vector<double> slopes(two.states.size());
+  EXPECT_EQ(exchanged.fmi.GetDerivatives(exchanged.c, slopes.data(), slopes.size()), fmi2OK);
+  fmi2Boolean enter = fmi2False, end = fmi2False;
+  EXPECT_EQ(exchanged.fmi.CompletedIntegratorStep(exchanged.c, fmi2True, &enter, &end), fmi2Error);
+  EXPECT_EQ(exchanged.fmi.EnterEventMode(exchanged.c), fmi2Error);
+  EXPECT_EQ(exchanged.fmi.SetTime(exchanged.c, 0.3), fmi2OK);
+  EXPECT_EQ(exchanged.fmi.EnterEventMode(exchanged.c), fmi2OK);
 }
 
 }  // namespace withy::test
