@@ -126,7 +126,9 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry) {
   // Motions of hosts begin where the hinges are.
   add_inputs(v, prepared.model(), begun(prepared.model(), *prepared.equations, prepared.scene.initial));
   add_outputs(v, prepared);
-  for (const SceneNumber& n : scene_numbers(prepared.scene, registry)) {
+  SignalUnits units;
+  for (const Variable& variable : v.all) units.emplace(variable.name, variable.unit);
+  for (const SceneNumber& n : scene_numbers(prepared.scene, registry, units)) {
     v.all.push_back(
         {Kind::parameter, v.parameters++, n.path, n.unit == "1" ? "" : n.unit, n.meaning, n.value, n.least, n.most});
     v.all.back().tunable = is_tunable(prepared.model(), n.path);

@@ -153,6 +153,57 @@ time: {end: 1}
   }
 }
 
+TEST(Description, ParametersOfWhatActsAlongASlidingHingeAreForcesAndLengths) {
+  const std::filesystem::path file = scratch() / "slide.yaml";
+  std::ofstream(file) << R"(format: withy/1
+time: {end: 1, output: 0.1}
+bodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}, b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]},
+  c: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges:
+  turn: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
+  wrist: {type: prismatic, axis: [1, 0, 0], parent: a, child: b}
+  driven: {type: prismatic, axis: [1, 0, 0], parent: b, child: c}
+motions: {swing: {type: sine, hinge: driven, amplitude: 0.1, frequency: 1, phase: 0.2}}
+loads:
+  push: {type: input, hinge: wrist}
+  brake: {type: hinge-spring, hinge: wrist, stiffness: 20, damping: 2, free_position: 0.1, preload: 1}
+  stop: {type: hinge-limit, hinge: wrist, lower: -1, stiffness: 100}
+  torsion: {type: hinge-spring, hinge: turn, stiffness: 20}
+  servo: {type: pd-controller, law: constant, hinges: {turn: {to: 0.1, stiffness: 1}, wrist: {to: 0.1, stiffness: 1}}}
+  hold: {type: pid, hinge: wrist, proportional: 3}
+  far: {type: pid, of: wrist, to: push, proportional: 3, integral: 1}
+  fast: {type: pid, of: turn.rate, hinge: turn, proportional: 3, limit: 2}
+)";
+  const Unpacked& fmu = exported(file.string(), 3);
+  const auto unit = [&](const std::string& path) {
+    const auto& attributes = fmu.variables.at(fmu.reference(path)).attributes;
+    return attributes.contains("unit") ? attributes.at("unit") : "";
+  };
+  for (const auto& [path, expected] :
+       std::map<std::string, std::string>{{"loads.brake.stiffness", "N/m"},
+                                          {"loads.brake.damping", "N s/m"},
+                                          {"loads.brake.free_position", "m"},
+                                          {"loads.brake.preload", "N"},
+                                          {"loads.stop.lower", "m"},
+                                          {"loads.stop.stiffness", "N/m"},
+                                          {"loads.torsion.stiffness", "N m/rad"},
+                                          {"motions.swing.amplitude", "m"},
+                                          {"motions.swing.phase", "rad"},
+                                          {"loads.servo.hinges.turn.stiffness", "N m/rad"},
+                                          {"loads.servo.hinges.wrist.to", "m"},
+                                          {"loads.servo.hinges.wrist.stiffness", "N/m"},
+                                          {"loads.hold.proportional", "N/m"},
+                                          {"loads.far.proportional", "N/m"},
+                                          {"loads.far.integral", "N/(m s)"},
+                                          {"loads.fast.proportional", ""},
+                                          {"loads.fast.limit", "N m"}})
+    EXPECT_EQ(unit(path), expected) << path;
+  std::map<std::string, std::map<std::string, std::string>> units;
+  for (const auto& [tag, element] : fmu.xml.get_child("UnitDefinitions"))
+    units[attributes_of(element).at("name")] = attributes_of(element.get_child("BaseUnit"));
+  EXPECT_EQ(units.at("N/(m s)"), (std::map<std::string, std::string>{{"kg", "1"}, {"s", "-3"}}));
+}
+
 TEST(Description, WhatCannotBeAnFmuIsRefusedWithItsReason) {
   const auto refused = [](host::Scene scene) -> std::string {
     const auto prepared = scene.prepare();
