@@ -81,26 +81,6 @@ void add_constraint(const std::string& name, const Value& given, const SceneTree
   }
 }
 
-/// What an `initial` says of positions and rates.
-GivenState given_state(const Value* initial, const Model& model) {
-  const Layout& layout = model.layout();
-  GivenState given{std::vector<bool>(layout.speeds, false), std::vector<bool>(layout.speeds, false)};
-  const auto note = [&](const char* group, const std::vector<Slot>& slots, const char* position, const char* rate) {
-    const Value* parts = initial != nullptr ? initial->find(group) : nullptr;
-    for (const Slot& slot : slots) {
-      const Value* part = parts != nullptr ? parts->find(slot.name) : nullptr;
-      if (part == nullptr) continue;
-      for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) {
-        given.positions[i] = part->find(position) != nullptr;
-        given.rates[i] = part->find(rate) != nullptr;
-      }
-    }
-  };
-  note("hinges", layout.hinges, "position", "rate");
-  note("bodies", layout.bodies, "modes", "rates");
-  return given;
-}
-
 }  // namespace
 
 Value add_constraints(const Value& constraints, const SceneTree& tree, const Checker& checker) {
@@ -119,6 +99,25 @@ Value without_guess(const Value& initial, const Model& model, const Checker& che
   for (const auto& [key, value] : initial.members())
     if (key != "guess") rest.members().emplace_back(key, value);
   return rest;
+}
+
+GivenState given_state(const Value* initial, const Model& model) {
+  const Layout& layout = model.layout();
+  GivenState given{std::vector<bool>(layout.speeds, false), std::vector<bool>(layout.speeds, false)};
+  const auto note = [&](const char* group, const std::vector<Slot>& slots, const char* position, const char* rate) {
+    const Value* parts = initial != nullptr ? initial->find(group) : nullptr;
+    for (const Slot& slot : slots) {
+      const Value* part = parts != nullptr ? parts->find(slot.name) : nullptr;
+      if (part == nullptr) continue;
+      for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) {
+        given.positions[i] = part->find(position) != nullptr;
+        given.rates[i] = part->find(rate) != nullptr;
+      }
+    }
+  };
+  note("hinges", layout.hinges, "position", "rate");
+  note("bodies", layout.bodies, "modes", "rates");
+  return given;
 }
 
 Value close_loops(const Model& model, const Scene& scene, const Value* given, const Checker& checker, State& state) {

@@ -2,6 +2,7 @@
 /// From the constraints of a scene to loops of its model.
 #pragma once
 
+#include "withy/core/simulation/assembly.hpp"
 #include "withy/scene/tree.hpp"
 
 namespace withy {
@@ -11,6 +12,9 @@ Value add_constraints(const Value& constraints, const SceneTree& tree, const Che
 
 /// An initial state without its `guess`, which goes to `state`: where closing loops begins.
 Value without_guess(const Value& initial, const Model& model, const Checker& checker, State& state);
+
+/// What an `initial` gives of positions and rates, by its hinges and bodies. \param initial null: nothing
+GivenState given_state(const Value* initial, const Model& model);
 
 /// Brings the model's loops to closure in the scene's formulation, by what its `initial` gives, if it has one.
 /// \returns what was changed, a sentence; null where nothing was or problems are reported

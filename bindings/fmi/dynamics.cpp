@@ -88,6 +88,8 @@ Dynamics::Dynamics(std::shared_ptr<const study::Prepared> prepared, double t)
   begin();
 }
 
+State Dynamics::initial() const { return initial_at(*prepared_, state_.time); }
+
 void Dynamics::changed() {
   seen_is_now_ = derivatives_are_now_ = jacobian_is_now_ = false;
   row_ = nullptr;

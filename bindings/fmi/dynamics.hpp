@@ -47,6 +47,9 @@ class Dynamics {
   /// Whether a motion prescribes the state of this index.
   [[nodiscard]] bool driven(std::size_t state) const { return driven_[state]; }
 
+  /// The scene's initial state at this time: what motions prescribe is where it now is.
+  [[nodiscard]] State initial() const;
+
   void set_time(double t);
   void set_moving(std::span<const double> y);
   void set_state(std::size_t index, double value);

@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "withy/bindings/fmi/resources.hpp"
-#include "withy/core/model/closing.hpp"
-#include "withy/core/simulation/assembly.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 
@@ -168,6 +166,7 @@ void Instance::remake() {
   made->begin();
   dynamics_ = std::move(made);
   stale_ = false;
+  open_ = true;
 }
 
 /// A filter begins at what it measures, wherever the host begins: as in a run from there.
@@ -176,30 +175,6 @@ void Instance::begin_loads(Dynamics& dynamics) const {
   for (std::size_t i = 0; i < variables_.states; ++i)
     if (variables_.all[variables_.state(i)].begun && is_started_[i] == 0) states.push_back(i);
   dynamics.begin_loads(states);
-}
-
-/// Closes loops that start values have opened, as a scene does that says the same: what was set stays.
-/// \throws std::invalid_argument where they cannot be closed so
-void Instance::close_loops(Dynamics& dynamics) const {
-  const Model& model = dynamics.model();
-  const std::vector<const LoopClosure*> loops = loops_of(model);
-  const Layout& layout = model.layout();
-  if (loops.empty() || std::find(is_started_.begin(), is_started_.end(), 1) == is_started_.end()) return;
-  GivenState given{std::vector<bool>(layout.speeds, false), std::vector<bool>(layout.speeds, false)};
-  const auto note = [&](const Slot& slot) {
-    for (std::size_t i = 0; i < slot.positions; ++i)
-      for (std::size_t k = 0; is_started_[slot.position + i] != 0 && k < slot.speeds; ++k)
-        if (slot.positions != slot.speeds || k == i) given.positions[slot.speed + k] = true;
-    for (std::size_t k = 0; k < slot.speeds; ++k)
-      given.rates[slot.speed + k] = is_started_[layout.positions + slot.speed + k] != 0;
-  };
-  std::for_each(layout.hinges.begin(), layout.hinges.end(), note);
-  std::for_each(layout.bodies.begin(), layout.bodies.end(), note);
-  State state = dynamics.state();
-  const Assembly closed = assemble(model, *dynamics.prepared().equations, given, state);
-  if (!closed.fault.empty())
-    throw std::invalid_argument("constraint '" + loops[closed.loop]->name() + "': " + closed.fault);
-  dynamics.set_moving(std::span(state.y).first(dynamics.states()));
 }
 
 /// Goes on from where it stands with other parameters. \param before those up to now, which stay where it throws
@@ -244,8 +219,8 @@ void Instance::enter_initialization() {
 
 void Instance::exit_initialization() {
   Dynamics& d = dynamics();
-  close_loops(d);
-  begin_loads(d);
+  open_ = true;
+  if (const std::string fault = settle_start(); !fault.empty()) throw std::invalid_argument(fault);
   d.begin();
   if (kind_ == Kind::co_simulation) {
     make_session();
@@ -283,6 +258,8 @@ const Variable& Instance::variable(std::uint32_t reference) const {
 }
 
 void Instance::get(std::span<const std::uint32_t> references, double* values) {
+  if (is_in(static_cast<unsigned>(Mode::initialization)))
+    if (const std::string fault = settle_start(); !fault.empty()) throw Discarded(fault);
   for (const std::uint32_t reference : references) {
     const Variable& v = variable(reference);
     switch (v.kind) {
@@ -362,6 +339,7 @@ void Instance::set(std::span<const std::uint32_t> references, const double* valu
   set_those(true);
   if (parameters_ != before && is_in(Mode::event | Mode::step)) retune(before);
   set_those(false);
+  open_ = true;
   if (!stale_ && is_in(Mode::instantiated | Mode::initialization)) begin_loads(*dynamics_);
 }
 

@@ -132,7 +132,7 @@ class Instance {
   [[nodiscard]] std::shared_ptr<const study::Prepared> with_parameters() const;
   void remake();
   void begin_loads(Dynamics& dynamics) const;
-  void close_loops(Dynamics& dynamics) const;
+  [[nodiscard]] std::string settle_start();
   void retune(const std::vector<double>& before);
   void make_session();
   void remember(Memory& memory);
@@ -158,6 +158,7 @@ class Instance {
   std::vector<double> inputs_;  ///< values set last, where `is_input_set_`
   std::vector<char> is_input_set_;
   bool stale_ = true;  ///< parameters, start time or tolerance are not those that `dynamics_` was made with
+  bool open_ = true;   ///< start values were set since loops were last closed around them
   std::unique_ptr<Dynamics> dynamics_;
   std::unique_ptr<Session> session_;  ///< of co-simulation, once initialized
   const BetweenSteps* between_ = nullptr;

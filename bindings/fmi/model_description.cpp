@@ -89,7 +89,7 @@ class Writer {
         is("independent", "continuous", "");
         break;
       case Kind::state:
-        is("output", "continuous", v.begun ? "approx" : "exact");
+        is("output", "continuous", v.approximate() ? "approx" : "exact");
         break;
       case Kind::derivative:
       case Kind::indicator:
@@ -172,7 +172,7 @@ class Writer {
               positions[i].empty() ? nullptr : &positions[i]);
     if (two) x_.close().open("InitialUnknowns");
     for (std::size_t i = 0; i < v_.states; ++i)
-      if (v_.all[v_.state(i)].begun) unknown(two ? "Unknown" : "InitialUnknown", v_.state(i), nullptr);
+      if (v_.all[v_.state(i)].approximate()) unknown(two ? "Unknown" : "InitialUnknown", v_.state(i), nullptr);
     for (std::size_t i = 0; i < v_.states; ++i) unknown(two ? "Unknown" : "InitialUnknown", v_.derivative(i), nullptr);
     for (std::size_t i = 0; i < v_.outputs; ++i) unknown(two ? "Unknown" : "InitialUnknown", v_.output(i), nullptr);
     if (two) x_.close();

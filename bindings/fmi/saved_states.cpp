@@ -56,6 +56,7 @@ void Instance::remember(Memory& memory) {
     return;
   }
   dynamics().remember(memory);
+  open_ = open_ || memory.reading();
   if (!simulating) return session_.reset();
   Checkpoint checkpoint;
   if (!memory.reading()) checkpoint = session_->snapshot();

@@ -55,6 +55,16 @@ void add_states(Variables& v, const Model& model, const State& initial) {
     v.all.push_back({Kind::state, i, columns[i].name, columns[i].unit, {}, initial.y[i]});
     v.all.back().begun = i >= v.states - model.layout().continuous && begun.y[i] == initial.y[i];
   }
+  if (!loops_of(model).empty()) {
+    const Layout& layout = model.layout();
+    const auto closes = [&](const Slot& slot) {
+      for (std::size_t i = 0; i < slot.positions; ++i) v.all[v.state(slot.position + i)].closes = true;
+      for (std::size_t i = 0; i < slot.speeds; ++i) v.all[v.state(layout.positions + slot.speed + i)].closes = true;
+    };
+    for (std::size_t h = 0; h < layout.hinges.size(); ++h)
+      if (!model.driven(h)) closes(layout.hinges[h]);
+    std::for_each(layout.bodies.begin(), layout.bodies.end(), closes);
+  }
   for (std::size_t i = 0; i < v.states; ++i)
     v.all.push_back({Kind::derivative, i, "der(" + columns[i].name + ")", per_second(columns[i].unit), {}});
 }

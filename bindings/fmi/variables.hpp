@@ -33,10 +33,14 @@ struct Variable {
   std::optional<double> minimum = {}, maximum = {};
   /// Of states: that of a load, which says where it begins at what else the start is, until it is set itself.
   bool begun = false;
+  /// Of states: of a scene with loops, which are closed by what is not set.
+  bool closes = false;
   /// Of outputs: the state alone decides them; else the inputs may as well.
   bool of_state_alone = false;
   /// Of parameters: may be set between the steps of a simulation; else they are fixed.
   bool tunable = false;
+  /// Of states: what else is set may change where it begins.
+  [[nodiscard]] bool approximate() const { return begun || closes; }
   /// "variable 'arm'", for messages.
   [[nodiscard]] std::string quoted() const { return "variable '" + name + "'"; }
 };

@@ -131,6 +131,11 @@ Free free_speeds(const Model& model, const std::vector<bool>& given, bool modes)
   return free;
 }
 
+std::vector<bool> either(std::vector<bool> a, const std::vector<bool>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = a[i] || b[i];
+  return a;
+}
+
 /// The coordinate or speed that has changed most, in words.
 std::string greatest_change(const Layout& layout, const State& before, const State& after, bool rates) {
   const Slot* most = nullptr;
@@ -163,7 +168,8 @@ std::size_t farthest(const Model& model, const Eigen::VectorXd& gaps) {
 
 }  // namespace
 
-Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state) {
+Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state,
+                  const GivenState* kept) {
   constexpr double near_enough = 1e-3;  // [m]
   const Layout& layout = model.layout();
   const State before = state;
@@ -171,7 +177,9 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
   Assembler assembler(model, equations, state);
   Assembly result;
   const double gap = assembler.gap();
-  bool good = assembler.close_positions(free_speeds(model, given.positions, false)) ||
+  bool good = (kept != nullptr &&
+               assembler.close_positions(free_speeds(model, either(given.positions, kept->positions), false))) ||
+              assembler.close_positions(free_speeds(model, given.positions, false)) ||
               assembler.close_positions(free_speeds(model, given.positions, true)) ||
               (gap <= near_enough && assembler.close_positions(free_speeds(model, none, true)));
   if (!good) {
@@ -192,7 +200,8 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
     return result;
   }
   const double rate = assembler.gap_rate();
-  good = assembler.close_rates(free_speeds(model, given.rates, false)) ||
+  good = (kept != nullptr && assembler.close_rates(free_speeds(model, either(given.rates, kept->rates), false))) ||
+         assembler.close_rates(free_speeds(model, given.rates, false)) ||
          assembler.close_rates(free_speeds(model, given.rates, true)) ||
          (rate <= near_enough && assembler.close_rates(free_speeds(model, none, true)));
   if (!good) {

@@ -26,6 +26,9 @@ struct Assembly {
 /// given stays, but where it lies within a thousandth of the largest body's length of closure and leaves no way: then
 /// all moves. Speeds that motions prescribe always stay.
 /// \param equations of the model; ClosedLoops
-Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state);
+/// \param kept what stays beside what is given where the other hinges can close the loops, positions and rates each for
+/// themselves; null: nothing
+Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state,
+                  const GivenState* kept = nullptr);
 
 }  // namespace withy

@@ -179,6 +179,66 @@ TEST(FmuParameters, StartValuesCloseLoops) {
   EXPECT_THAT(torn.heard.last, testing::HasSubstr("constraint 'loop'"));
 }
 
+/// A start value that is set changes nothing of what the scene gives, and what it closes is seen at once.
+TEST(FmuParameters, StartValuesLeaveWhatTheSceneGivesInClosedLoops) {
+  const std::string file = SCENES "/gallery/four-bar.yaml";
+  const std::filesystem::path out = scratch() / "four-bar-2.fmu";
+  host::Scene scene = host::Scene::read(library(), file);
+  static_cast<void>(fmi::export_fmu(*scene.prepare(), {}, library().registry(), {3, false, true, out}));
+  const Unpacked fmu = unpack(out, 3);
+  for (const char* state : {"elbow", "motor.rate"})
+    EXPECT_EQ(fmu.variables.at(fmu.reference(state)).attributes.at("initial"), "approx") << state;
+  const double motor = 1.8708;
+  const State said = scene.set("initial.hinges.motor.position.0", motor).prepare()->scene.initial;
+  const auto expect_begun = [&](Instance3& i) {
+    EXPECT_EQ(i.get(fmu.reference("motor")), motor);
+    EXPECT_EQ(i.get(fmu.reference("motor.rate")), 6);
+    for (std::size_t s = 0; s < fmu.states.size(); ++s) EXPECT_NEAR(i.get(fmu.states[s]), said.y[s], 1e-9) << s;
+    const double pivot = i.get(fmu.reference("pivot"));
+    EXPECT_NEAR(i.get(fmu.reference("coupler.tip.x")), 0.9 + 0.8 * std::cos(pivot), 1e-12);
+  };
+  Instance3 i(fmu, true);
+  EXPECT_EQ(i.fmi.EnterInitializationMode(i.c, false, 0, 0, false, 0), fmi3OK);
+  i.set(fmu.reference("motor"), 1.2);
+  EXPECT_NE(i.get(fmu.reference("elbow")), 0);  // closed, and not what the next closing goes from
+  i.set(fmu.reference("motor"), motor);
+  expect_begun(i);
+  EXPECT_EQ(i.fmi.ExitInitializationMode(i.c), fmi3OK) << i.heard.last;
+  expect_begun(i);
+  // Where the scene's own position leaves no way it yields to what is set; its rate stays.
+  Instance3 by_elbow(fmu, true);
+  by_elbow.set(fmu.reference("elbow"), -1.3);
+  by_elbow.initialize();
+  EXPECT_EQ(by_elbow.get(fmu.reference("elbow")), -1.3);
+  EXPECT_GT(by_elbow.get(fmu.reference("motor")), 1.6);
+  EXPECT_EQ(by_elbow.get(fmu.reference("motor.rate")), 6);
+  // What cannot be closed cannot be read.
+  Instance3 torn(fmu, true);
+  for (const char* hinge : {"motor", "elbow", "pivot"}) torn.set(fmu.reference(hinge), 0);
+  EXPECT_EQ(torn.fmi.EnterInitializationMode(torn.c, false, 0, 0, false, 0), fmi3OK);
+  double value = 0;
+  const std::uint32_t elbow = fmu.reference("elbow");
+  EXPECT_EQ(torn.fmi.GetFloat64(torn.c, &elbow, 1, &value, 1), fmi3Discard);
+}
+
+/// Motions that are elsewhere at another start time open loops, which are closed there.
+TEST(FmuParameters, LoopsAreClosedAtTheStartTimeOfTheHost) {
+  host::Scene scene = host::Scene::read(library(), SCENES "/gallery/four-bar.yaml");
+  scene.set("initial", "{guess: {hinges: {elbow: {position: [60 deg]}, pivot: {position: [80 deg]}}}}");
+  scene.set("loads.torque", "null");
+  scene.set("motions", "{drive: {type: spin-up, hinge: motor, rate: 6 rad/s, duration: 1}}");
+  const std::filesystem::path out = scratch() / "driven-four-bar.fmu";
+  static_cast<void>(fmi::export_fmu(*scene.prepare(), {}, library().registry(), {3, false, true, out}));
+  const Unpacked fmu = unpack(out, 3);
+  Instance3 i(fmu, true);
+  EXPECT_EQ(i.fmi.EnterInitializationMode(i.c, false, 0, 0.5, false, 0), fmi3OK) << i.heard.last;
+  EXPECT_EQ(i.fmi.ExitInitializationMode(i.c), fmi3OK) << i.heard.last;
+  EXPECT_GT(i.get(fmu.reference("motor.rate")), 1);
+  const double pivot = i.get(fmu.reference("pivot"));
+  EXPECT_NEAR(i.get(fmu.reference("coupler.tip.x")), 0.9 + 0.8 * std::cos(pivot), 1e-12);
+  EXPECT_NEAR(i.get(fmu.reference("coupler.tip.y")), 0.8 * std::sin(pivot), 1e-12);
+}
+
 /// Numbers of vectors that the file has not, or has in another form, are parameters as others are.
 TEST(FmuParameters, AreElementsOfVectorsThatTheFileLeavesOut) {
   const std::filesystem::path file = scratch() / "plain.yaml";
