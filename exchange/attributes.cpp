@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "withy/core/spatial/direction.hpp"
 #include "withy/scene/names.hpp"
 
 namespace withy::exchange {
@@ -62,8 +63,7 @@ Vector3 Attributes::vector(std::string_view key, const Vector3& otherwise) const
 }
 
 Vector3 Attributes::direction(std::string_view key, const Vector3& otherwise) const {
-  const Vector3 v = vector(key, otherwise);
-  if (v.norm() > 0) return v.normalized();
+  if (const auto unit = unit_along(vector(key, otherwise))) return *unit;
   error(key, "got the direction 0 0 0; need one of any length but zero");
   return otherwise;
 }

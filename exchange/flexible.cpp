@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "withy/core/spatial/direction.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene_error.hpp"
 
@@ -69,8 +70,9 @@ class FlexibleReader {
     Vector3 wish = std::abs(x.y()) < 0.9 ? Vector3::UnitY() : Vector3::UnitZ();
     if (const Value* given = value.find("y")) {
       const auto read = point(*given);
-      if (read) wish = *read;
-      if (read && x.cross(*read).norm() <= 1e-9 * read->norm())
+      const auto unit = read ? unit_along(*read) : std::nullopt;
+      if (unit) wish = *unit;
+      if (read && (!unit || x.cross(*unit).norm() <= 1e-9))
         diagnostics_.error(given->place(), "the direction of y is along the beam; need one across it");
     }
     flexible.beam.R.col(0) = x;

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "withy/core/spatial/direction.hpp"
 #include "withy/scene/names.hpp"
 
 namespace withy::exchange {
@@ -68,8 +69,8 @@ Element MjcfDefaults::completed(const Element& element, const std::string& aroun
 Matrix3 MjcfAngles::rotation(const Element& element, Diagnostics& diagnostics) const {
   const Attributes a(element, diagnostics);
   if (const auto v = a.numbers("axisangle", 4, 4)) {
-    const Vector3 axis((*v)[0], (*v)[1], (*v)[2]);
-    if (axis.norm() > 0) return Eigen::AngleAxisd(unit * (*v)[3], axis.normalized()).toRotationMatrix();
+    const auto axis = unit_along(Vector3((*v)[0], (*v)[1], (*v)[2]));
+    if (axis) return Eigen::AngleAxisd(unit * (*v)[3], *axis).toRotationMatrix();
     a.error("axisangle", "got the axis 0 0 0; need a direction");
   }
   if (element.find("euler") != nullptr) {
@@ -84,11 +85,11 @@ Matrix3 MjcfAngles::rotation(const Element& element, Diagnostics& diagnostics) c
     return R;
   }
   if (const auto v = a.numbers("xyaxes", 6, 6)) {
-    const Vector3 x((*v)[0], (*v)[1], (*v)[2]), y((*v)[3], (*v)[4], (*v)[5]);
-    if (x.cross(y).norm() > 0) {
+    const auto x = unit_along(Vector3((*v)[0], (*v)[1], (*v)[2])), y = unit_along(Vector3((*v)[3], (*v)[4], (*v)[5]));
+    if (x && y && x->cross(*y).norm() > 0) {
       Matrix3 R;
-      R.col(0) = x.normalized();
-      R.col(2) = x.cross(y).normalized();
+      R.col(0) = *x;
+      R.col(2) = x->cross(*y).normalized();
       R.col(1) = R.col(2).cross(R.col(0));
       return R;
     }
@@ -97,8 +98,8 @@ Matrix3 MjcfAngles::rotation(const Element& element, Diagnostics& diagnostics) c
   if (element.find("zaxis") != nullptr)
     return rotation_between(Vector3::UnitZ(), a.direction("zaxis", Vector3::UnitZ()));
   if (const auto q = a.numbers("quat", 4, 4)) {
-    const Eigen::Quaterniond quaternion((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
-    if (quaternion.norm() > 0) return quaternion.normalized().toRotationMatrix();
+    const auto unit_one = unit_along(Eigen::Vector4d((*q)[0], (*q)[1], (*q)[2], (*q)[3]));
+    if (unit_one) return rotation_from_quaternion((*unit_one)[0], (*unit_one)[1], (*unit_one)[2], (*unit_one)[3]);
     a.error("quat", "got 0 0 0 0; need a quaternion");
   }
   return Matrix3::Identity();

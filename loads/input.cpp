@@ -2,7 +2,9 @@
 /// An input: an effort on a rate of a hinge, or a force or moment at a frame, whose value a host sets between steps.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "withy/core/plugin/direction.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/loads/frame_load.hpp"
 #include "withy/loads/hinge_rate.hpp"
@@ -181,16 +183,10 @@ std::unique_ptr<Load> make_input(const Value& p, const MakeContext& context) {
   if (p.has("hinge"))
     return std::make_unique<HingeInput>(std::move(table),
                                         RateName{p.text_at("hinge"), p.has("component") ? p.count_at("component") : 0});
-  const std::vector<double> d = p.at("direction").numbers();
-  FrameInput at{p.text_at("frame"),
-                {d[0], d[1], d[2]},
-                p.has("following") && p.at("following").boolean(),
+  const std::optional<Vector3> direction = direction_at(p, "direction", context);
+  if (!direction) return nullptr;
+  FrameInput at{p.text_at("frame"), *direction, p.has("following") && p.at("following").boolean(),
                 p.has("acts") && p.text_at("acts") == "torque"};
-  if (!(at.direction.norm() > 0)) {
-    context.diagnostics.error(p.at("direction").place(), "has no length; need a direction");
-    return nullptr;
-  }
-  at.direction.normalize();
   return std::make_unique<InputAtFrame>(std::move(table), std::move(at));
 }
 

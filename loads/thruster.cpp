@@ -1,7 +1,9 @@
 /// \file
 /// A thruster: a force fixed in a frame, on or off.
 #include <algorithm>
+#include <optional>
 
+#include "withy/core/plugin/direction.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/loads/frame_load.hpp"
 
@@ -59,9 +61,7 @@ std::unique_ptr<Load> make_thruster(const Value& p, const MakeContext& context) 
     context.diagnostics.error(at.place(), message);
     good = false;
   };
-  const std::vector<double> d = p.at("direction").numbers();
-  const Vector3 direction(d[0], d[1], d[2]);
-  if (!(direction.norm() > 0)) error(p.at("direction"), "has no length; need a direction");
+  const std::optional<Vector3> direction = direction_at(p, "direction", context);
   std::vector<Firing> firings;
   for (const Value& row : p.at("firings").items()) {
     const Firing f{row.items()[0].number(), row.items()[1].number()};
@@ -70,9 +70,8 @@ std::unique_ptr<Load> make_thruster(const Value& p, const MakeContext& context) 
     firings.push_back(f);
   }
   if (firings.empty()) error(p.at("firings"), "has no row; need [on, off] at least once");
-  if (!good) return nullptr;
-  return std::make_unique<Thruster>(p.text_at("frame"), p.number_at("thrust") * direction.normalized(),
-                                    std::move(firings));
+  if (!good || !direction) return nullptr;
+  return std::make_unique<Thruster>(p.text_at("frame"), p.number_at("thrust") * *direction, std::move(firings));
 }
 
 }  // namespace

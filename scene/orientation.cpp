@@ -1,6 +1,9 @@
 #include "withy/scene/orientation.hpp"
 
 #include <Eigen/Geometry>
+#include <optional>
+
+#include "withy/core/spatial/direction.hpp"
 
 namespace withy {
 namespace {
@@ -44,12 +47,12 @@ std::optional<Value> read_orientation(const Value& map, const Checker& checker) 
   const auto checked = checker.check_members(map, axis_and_angle());
   if (!checked) return {};
   const std::vector<double> a = checked->at("axis").numbers();
-  const Eigen::Vector3d axis = Eigen::Vector3d(a[0], a[1], a[2]).stableNormalized();
-  if (!(axis.norm() > 0)) {
+  const std::optional<Vector3> axis = unit_along(Vector3(a[0], a[1], a[2]));
+  if (!axis) {
     checker.diagnostics().error(map.at("axis").place(), "got an axis of length 0; need a direction");
     return {};
   }
-  return value_of(about(axis, checked->number_at("angle")), map.place());
+  return value_of(about(*axis, checked->number_at("angle")), map.place());
 }
 
 }  // namespace withy

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "frame_sensor.hpp"
+#include "withy/core/plugin/direction.hpp"
 
 namespace withy {
 namespace {
@@ -43,15 +44,9 @@ class AngleSensor final : public Sensor {
 
 std::unique_ptr<Sensor> make_angle(const Value& p, const MakeContext& context) {
   std::optional<Vector3> axis;
-  if (const Value* given = p.find("axis")) {
-    const std::vector<double> a = given->numbers();
-    axis = Vector3(a[0], a[1], a[2]);
-    const double length = axis->norm();
-    if (!(length > 0) || !std::isfinite(length)) {
-      context.diagnostics.error(given->place(), "has no direction; need a vector that is not zero");
-      return nullptr;
-    }
-    *axis /= length;
+  if (p.has("axis")) {
+    axis = direction_at(p, "axis", context);
+    if (!axis) return nullptr;
   }
   return std::make_unique<AngleSensor>(p.text_at("from"), p.text_at("to"), axis);
 }

@@ -29,7 +29,7 @@ class Cylindrical final : public HolonomicHinge {
 };
 
 std::unique_ptr<Hinge> make_cylindrical(const Value& p, const MakeContext& context) {
-  const auto axis = unit_vector(p, "axis", context);
+  const auto axis = direction_at(p, "axis", context);
   if (!axis) return nullptr;
   return std::make_unique<Cylindrical>(*axis);
 }

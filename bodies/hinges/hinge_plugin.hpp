@@ -2,8 +2,7 @@
 /// What the hinge plugins of this folder share.
 #pragma once
 
-#include <optional>
-
+#include "withy/core/plugin/direction.hpp"
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/registry.hpp"
 
@@ -13,17 +12,6 @@ namespace withy {
 inline std::vector<ParameterSpec> axis_parameter() {
   return {
       vector("axis", 3, "1", "axis, the same components in the hinge frames of parent and child; any length but zero")};
-}
-
-/// The unit vector along a vector of the scene; nothing after a reported error.
-inline std::optional<Vector3> unit_vector(const Value& parameters, std::string_view key, const MakeContext& context) {
-  const std::vector<double> a = parameters.at(key).numbers();
-  const Vector3 axis(a[0], a[1], a[2]);
-  if (!(axis.stableNorm() > 0)) {
-    context.diagnostics.error(parameters.at(key).place(), "got a zero vector; need a direction");
-    return {};
-  }
-  return axis.stableNormalized();
 }
 
 /// A direction as the default of a parameter.

@@ -37,7 +37,7 @@ class PlanarHinge final : public HolonomicHinge {
 };
 
 std::unique_ptr<Hinge> make_planar(const Value& p, const MakeContext& context) {
-  const auto normal = unit_vector(p, "normal", context), along = unit_vector(p, "along", context);
+  const auto normal = direction_at(p, "normal", context), along = direction_at(p, "along", context);
   if (!normal || !along) return nullptr;
   if (nearly_parallel(*normal, *along)) {
     context.diagnostics.error(p.at("along").place(), "is parallel to 'normal'; need a direction across it");

@@ -27,7 +27,7 @@ class Revolute final : public HolonomicHinge {
 };
 
 std::unique_ptr<Hinge> make_revolute(const Value& p, const MakeContext& context) {
-  const auto axis = unit_vector(p, "axis", context);
+  const auto axis = direction_at(p, "axis", context);
   if (!axis) return nullptr;
   return std::make_unique<Revolute>(*axis);
 }

@@ -28,7 +28,7 @@ class Screw final : public HolonomicHinge {
 };
 
 std::unique_ptr<Hinge> make_screw(const Value& p, const MakeContext& context) {
-  const auto axis = unit_vector(p, "axis", context);
+  const auto axis = direction_at(p, "axis", context);
   if (!axis) return nullptr;
   return std::make_unique<Screw>(*axis, p.number_at("pitch"));
 }

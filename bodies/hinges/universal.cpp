@@ -37,7 +37,7 @@ class Universal final : public HolonomicHinge {
 };
 
 std::unique_ptr<Hinge> make_universal(const Value& p, const MakeContext& context) {
-  const auto first = unit_vector(p, "first_axis", context), second = unit_vector(p, "second_axis", context);
+  const auto first = direction_at(p, "first_axis", context), second = direction_at(p, "second_axis", context);
   if (!first || !second) return nullptr;
   if (nearly_parallel(*first, *second)) {
     context.diagnostics.error(p.at("second_axis").place(), "is parallel to 'first_axis'; need two directions");

@@ -124,14 +124,6 @@ inline Vector3 vector_at(const Value& p, const char* key) {
   return {x[0], x[1], x[2]};
 }
 
-/// A direction of any length, of unit length then; reports one that has none and gives nothing.
-inline std::optional<Vector3> direction_at(const Value& p, const char* key, const MakeContext& context) {
-  const Vector3 d = vector_at(p, key);
-  if (d.norm() > 0) return d.normalized();
-  context.diagnostics.error(p.at(key).place(), "has no length; need a direction");
-  return {};
-}
-
 inline ParameterSpec center_parameter(std::string meaning) {
   return vector("center", 3, "m", std::move(meaning)).otherwise(Value::list({Value(0.0), Value(0.0), Value(0.0)}));
 }

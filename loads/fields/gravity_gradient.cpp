@@ -2,6 +2,7 @@
 /// The gradient of gravity along a circular orbit, seen from the point that moves on it.
 #include <Eigen/Geometry>
 
+#include "withy/core/plugin/direction.hpp"
 #include "withy/loads/fields/bound_field.hpp"
 
 namespace withy {
@@ -34,8 +35,8 @@ std::unique_ptr<Load> make_gravity_gradient(const Value& p, const MakeContext& c
   law.rate = p.number_at("rate");
   law.turning = p.text_at("axes") == "orbit";
   law.center = fields::vector_at(p, "center");
-  const std::optional<Vector3> normal = fields::direction_at(p, "normal", context);
-  const std::optional<Vector3> vertical = fields::direction_at(p, "vertical", context);
+  const std::optional<Vector3> normal = direction_at(p, "normal", context);
+  const std::optional<Vector3> vertical = direction_at(p, "vertical", context);
   if (!normal || !vertical) return nullptr;
   if (std::abs(normal->dot(*vertical)) > 1e-9) {
     context.diagnostics.error(p.at("vertical").place(), "is not perpendicular to 'normal'");

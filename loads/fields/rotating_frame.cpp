@@ -1,5 +1,6 @@
 /// \file
 /// What all mass feels where the axes of the world turn.
+#include "withy/core/plugin/direction.hpp"
 #include "withy/loads/fields/bound_field.hpp"
 
 namespace withy {
@@ -26,7 +27,7 @@ std::unique_ptr<Load> make_rotating_frame(const Value& p, const MakeContext& con
   law.rate = p.number_at("rate");
   law.acceleration = p.number_at("acceleration");
   law.center = fields::vector_at(p, "center");
-  const std::optional<Vector3> axis = fields::direction_at(p, "axis", context);
+  const std::optional<Vector3> axis = direction_at(p, "axis", context);
   if (!axis) return nullptr;
   law.axis = *axis;
   return std::make_unique<fields::Field<RotatingFrame>>(law);

@@ -89,6 +89,16 @@ TEST(Screw, advances_by_its_pitch_for_each_radian) {
   EXPECT_NEAR(m.pose.p.z(), 0.02 * quarter, 1e-17);
 }
 
+// Up to the ends of the range of numbers, where squares and norms are infinite or zero.
+TEST(Hinge, directions_have_any_length) {
+  const auto turned = [](double x, double y, double z) {
+    return moved("revolute", {{"axis", direction(x, y, z)}}, {quarter}).pose.R;
+  };
+  EXPECT_LT((turned(1.7e308, 1.7e308, 1.7e308) - turned(1, 1, 1)).norm(), 1e-15);
+  EXPECT_LT((turned(0, 5e-324, 5e-324) - turned(0, 1, 1)).norm(), 1e-15);
+  EXPECT_LT((turned(1e200, -2e200, 0) - turned(1, -2, 0)).norm(), 1e-15);
+}
+
 TEST(Hinge, directions_that_do_not_do_are_errors) {
   Registry registry = every_plugin();
   const auto problem = [&](const std::string& id, std::vector<Value::Member> parameters) {
@@ -98,9 +108,9 @@ TEST(Hinge, directions_that_do_not_do_are_errors) {
   };
   const Value zero = direction(0, 0, 0);
   for (const char* id : {"revolute", "prismatic", "cylindrical"})
-    EXPECT_EQ(problem(id, {{"axis", zero}}), "got a zero vector; need a direction");
-  EXPECT_EQ(problem("screw", {{"axis", zero}, {"pitch", Value(1.0)}}), "got a zero vector; need a direction");
-  EXPECT_EQ(problem("universal", {{"second_axis", zero}}), "got a zero vector; need a direction");
+    EXPECT_EQ(problem(id, {{"axis", zero}}), "has no length; need a direction");
+  EXPECT_EQ(problem("screw", {{"axis", zero}, {"pitch", Value(1.0)}}), "has no length; need a direction");
+  EXPECT_EQ(problem("universal", {{"second_axis", zero}}), "has no length; need a direction");
   EXPECT_EQ(problem("universal", {{"second_axis", direction(-2, 0, 0)}}),
             "is parallel to 'first_axis'; need two directions");
   EXPECT_EQ(problem("planar", {{"normal", direction(1, 0, 0)}}), "is parallel to 'normal'; need a direction across it");

@@ -106,6 +106,14 @@ TEST(Mjcf, OrientationsInEveryFormAreTheSame) {
   EXPECT_NEAR(scene("euler='.3 .5 .7'"), want, 1e-12);
   EXPECT_NEAR(scene(axisangle.str()), want, 1e-12);
   EXPECT_NEAR(scene(xyaxes.str()), want, 1e-12);
+  // Of any length, up to the ends of the range of numbers.
+  const double turned = scene("axisangle='0 1 1 .5'"), crossed = scene("xyaxes='0 1 1 1 0 0'");
+  EXPECT_GT(std::abs(turned - scene("")), 1e-3);
+  for (const std::string l : {"1e200", "1e-200"}) {
+    EXPECT_NEAR(scene("axisangle='0 " + l + ' ' + l + " .5'"), turned, 1e-12) << l;
+    EXPECT_NEAR(scene("xyaxes='0 " + l + ' ' + l + ' ' + l + " 0 0'"), crossed, 1e-12) << l;
+    EXPECT_NEAR(scene("quat='" + l + ' ' + l + " 0 0'"), scene("quat='1 1 0 0'"), 1e-12) << l;
+  }
 }
 
 // By its ends a geom of any form has its length along z from one to the other and its first size across.

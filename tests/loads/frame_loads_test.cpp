@@ -86,6 +86,19 @@ TEST(Thruster, gives_its_impulse_between_its_switches_which_it_declares) {
   EXPECT_EQ(s.summary.steps.rejected, 0U);
 }
 
+TEST(Thruster, pushes_as_hard_whatever_the_length_of_its_direction) {
+  std::vector<Vector3> reached;
+  for (const char* direction :
+       {"[1, 2, 0]", "[1.0e200, 2.0e200, 0]", "[1.0e-200, 2.0e-200, 0]", "[5e-324, 1e-323, 0]"}) {
+    LoadedScene s(
+        free_body(std::string("  jet: {type: thruster, frame: bus, thrust: 3, firings: [[0, 1]], direction: ") +
+                  direction + "}\n"));
+    reached.push_back(velocity(s, s.run().back()));
+    EXPECT_GT(reached.back().norm(), 1) << direction;
+    EXPECT_LT((reached.back() - reached.front()).norm(), 1e-12) << direction;
+  }
+}
+
 /// It is fixed in its frame: burning all the time it does what a following force does.
 TEST(Thruster, turns_with_its_frame) {
   LoadedScene jet(
