@@ -18,7 +18,10 @@ class Reader {
   Reader(const Value& parameters, const MakeContext& context) : p_(parameters), context_(context) {}
 
   std::unique_ptr<Body> make() {
-    BeamMaterial material{p_.number_at("length"), profile(p_.at("mass_per_length")), {}, BodyDamping::read(p_)};
+    const std::optional<BodyDamping> damping = BodyDamping::read(p_, context_.diagnostics);
+    good_ = damping.has_value();
+    BeamMaterial material{
+        p_.number_at("length"), profile(p_.at("mass_per_length")), {}, damping.value_or(BodyDamping())};
     good_ = good_ && masses_are_held(material.mass_per_length.mean(), material.length);
     using enum BeamData::Strain;
     add("bending_y", Vector3::UnitZ(), bending, "rotary_inertia", material);

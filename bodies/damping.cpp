@@ -12,45 +12,29 @@ namespace withy {
 
 bool BodyDamping::given(const Value& p) { return p.has("damping_ratio") || p.has("damping"); }
 
-BodyDamping BodyDamping::read(const Value& p) {
+std::optional<BodyDamping> BodyDamping::read(const Value& p, Diagnostics& diagnostics) {
+  constexpr double most = 1e9;  // beyond what any body has, and exact
   BodyDamping damping;
   if (p.has("damping_ratio")) damping.ratio = p.number_at("damping_ratio");
   const Value* const more = p.find("damping");
   if (more == nullptr) return damping;
   if (more->has("stiffness_proportional")) damping.stiffness_proportional = more->number_at("stiffness_proportional");
-  if (more->has("ratios")) {
-    for (const Value& row : more->at("ratios").items())
-      damping.ratios[static_cast<int>(std::lround(row.items()[0].number()))] = row.items()[1].number();
+  if (!more->has("ratios")) return damping;
+  bool good = true;
+  for (const Value& row : more->at("ratios").items()) {
+    const Value& mode = row.items()[0];
+    const double number = mode.number();
+    if (number >= 1 && number <= most && number == std::floor(number)) {
+      damping.ratios[static_cast<int>(number)] = row.items()[1].number();
+      continue;
+    }
+    diagnostics.error(mode.place(), fmt::format("got {}; need the number of a mode, a whole number from 1", number));
+    good = false;
   }
-  return damping;
+  return good ? std::optional(damping) : std::nullopt;
 }
 
 namespace {
-
-/// Coordinates that K or G couple beyond rounding: what is apart in the data stays exactly apart in D.
-std::vector<std::vector<Eigen::Index>> coupled(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G) {
-  const Eigen::Index n = K.rows();
-  std::vector<std::vector<Eigen::Index>> groups;
-  std::vector<bool> taken(static_cast<std::size_t>(n), false);
-  const auto couples = [](const Eigen::MatrixXd& m, Eigen::Index i, Eigen::Index j) {
-    return std::abs(m(i, j)) > 1e-12 * std::sqrt(std::abs(m(i, i) * m(j, j)));
-  };
-  for (Eigen::Index first = 0; first < n; ++first) {
-    if (taken[static_cast<std::size_t>(first)]) continue;
-    std::vector<Eigen::Index> group = {first};
-    taken[static_cast<std::size_t>(first)] = true;
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        if (taken[static_cast<std::size_t>(j)] || !(couples(K, group[k], j) || couples(G, group[k], j))) continue;
-        taken[static_cast<std::size_t>(j)] = true;
-        group.push_back(j);
-      }
-    }
-    std::sort(group.begin(), group.end());
-    groups.push_back(std::move(group));
-  }
-  return groups;
-}
 
 /// A mode of vibration: D of a ratio of one in it, 2 ω (G v)(G v)ᵀ, on the coordinates it moves.
 struct OwnMode {
@@ -85,7 +69,7 @@ void add_modes(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G, const std::ve
 Eigen::MatrixXd BodyDamping::matrix(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G) const {
   Eigen::MatrixXd D = stiffness_proportional * K;
   if (K.rows() == 0 || (ratio == 0 && ratios.empty())) return D;
-  const std::vector<std::vector<Eigen::Index>> groups = coupled(K, G);
+  const std::vector<std::vector<Eigen::Index>> groups = coupled_coordinates(K, G);
   std::vector<OwnMode> modes;
   for (const std::vector<Eigen::Index>& group : groups) add_modes(K, G, group, modes);
   std::stable_sort(modes.begin(), modes.end(), [](const OwnMode& a, const OwnMode& b) { return a.square < b.square; });
@@ -122,7 +106,8 @@ std::vector<ParameterSpec> damping_parameters(bool with_default) {
   specs.push_back(with_default ? std::move(ratio).otherwise(0.0) : std::move(ratio).optional());
   specs.push_back(
       map("damping",
-          {table("ratios", {"1", "1"}, "number of a mode of the body held so, in order of frequency, and its own ratio")
+          {table("ratios", {"1", "1"},
+                 "number of a mode of the body held so, from 1 in order of frequency, and its own ratio")
                .least(0)
                .optional(),
            number("stiffness_proportional", "s", "beta of a damping beta K, ratio beta omega/2 beside the others")

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct BodyDamping {
 
   /// Whether the scene gives any of the three. \param p with the parameters below
   static bool given(const Value& p);
-  static BodyDamping read(const Value& p);
+  /// Nothing after reporting modes in `ratios` that no mode can be the number of.
+  static std::optional<BodyDamping> read(const Value& p, Diagnostics& diagnostics);
   /// D = β K + Σ_k 2 ζ_k ω_k (G v_k)(G v_k)ᵀ with K v = ω² G v, vᵀ G v = 1: the body's modes have the ratios ζ_k + β
   /// ω_k/2 whatever functions describe them. Motions without strain are not damped. Where G is singular each coordinate
   /// is taken for a mode.

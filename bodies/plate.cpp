@@ -277,8 +277,10 @@ class Plate final : public Body {
 };
 
 std::unique_ptr<Body> make_plate(const Value& p, const MakeContext& context) {
+  const std::optional<BodyDamping> damping = BodyDamping::read(p, context.diagnostics);
+  if (!damping) return nullptr;
   const Sheet sheet{p.number_at("length"),    p.number_at("width"),         p.number_at("mass_per_area"),
-                    p.number_at("stiffness"), p.number_at("poisson_ratio"), BodyDamping::read(p)};
+                    p.number_at("stiffness"), p.number_at("poisson_ratio"), *damping};
   const auto number = [&](const char* key, double value, int power = 1) {
     return Factor{key, &p.at(key), value, power};
   };

@@ -34,7 +34,10 @@ std::unique_ptr<Body> make_modal(const Value& p, const MakeContext& context) {
   FileNotes::add(named.text(), text);
   SidBodyOptions options;
   if (p.has("root")) options.root = p.text_at("root");
-  if (BodyDamping::given(p)) options.damping = BodyDamping::read(p);
+  if (BodyDamping::given(p)) {
+    options.damping = BodyDamping::read(p, context.diagnostics);
+    if (!options.damping) return nullptr;
+  }
   try {
     SidReport report;
     return body_of(sid::read(text), options, report);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace withy {
 
@@ -22,6 +23,10 @@ struct Vibrations {
 
 /// Whether a squared frequency is rounding beside the greatest [1/s²].
 bool is_rounding(double square, double greatest);
+
+/// Groups of coordinates, increasing in each, such that K and G couple those of one group and no others beyond
+/// rounding: what is apart in the data stays exactly apart in what is made of the groups' modes.
+std::vector<std::vector<Eigen::Index>> coupled_coordinates(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G);
 
 /// \param K symmetric [N/m]
 /// \param G symmetric [kg]

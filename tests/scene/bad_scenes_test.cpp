@@ -326,6 +326,9 @@ const BadScene bad_scenes[] = {
     {"output_of_a_place_without_a_frame", "loads:", "outputs: {end: {type: frame, of: boom.middle}}\nloads:",
      R"(20:34: /outputs/end/of: no frame "boom.middle"; known: hub, hub.root, hub.out, boom, boom.root, boom.tip; )"
      "frames of the body name its other places"},
+    {"ratios_of_modes_that_are_none", "damping_ratio: 0.01", "damping: {ratios: [[0, 0.1], [0.4, 0.2], [2, 0.3]]}",
+     "16:25: /bodies/boom/damping/ratios/0/0: got 0; need the number of a mode, a whole number from 1\n"
+     "s.yaml:16:35: /bodies/boom/damping/ratios/1/0: got 0.4; need the number of a mode, a whole number from 1"},
     {"load_component_out_of_range", "hinge: shoulder,", "hinge: shoulder, component: 1,", "21:3: /loads/motor: "},
     {"bodies_as_a_list", "bodies:\n  hub:\n    type: rigid", "bodies: [hub]\nlimits:\n  hub:\n    type: rigid",
      "4:9: /bodies: got a list of 1; need a map of names"},
