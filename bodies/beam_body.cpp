@@ -21,12 +21,13 @@
 #include <cmath>
 
 #include "beam_fields.hpp"
+#include "withy/core/plugin/turned_sections.hpp"
 #include "withy/core/shape/modal_mass.hpp"
 
 namespace withy {
 namespace {
 
-class Beam final : public Body, private Rod {
+class Beam final : public Body, public TurnedSections, private Rod {
  public:
   Beam(const BeamMaterial& material, std::vector<BeamStrain> strains, const StrainKinematics& kinematics)
       : material_(material),
@@ -62,8 +63,8 @@ class Beam final : public Body, private Rod {
       if (!rigid) shape_.particles[k].mass = mass;
       add_products(mass, f.phi, gram);
       if (material.twist) {
-        add_products(w * bending_stiffness(x[k]), f.psi_slope, shape_.stiffness);
-        add_products(w * elongation_stiffness(x[k]), f.gamma, shape_.stiffness);
+        add_products(w * turned(own_bending(x[k]), x[k]), f.psi_slope, shape_.stiffness);
+        add_products(w * turned(own_elongation(x[k]), x[k]), f.gamma, shape_.stiffness);
       } else {
         add_stiffness(w, f, x[k]);
       }
@@ -110,7 +111,7 @@ class Beam final : public Body, private Rod {
     BodyCut cut;
     cut.at = *at;
     cut.curvature = linear_fields(strains_, x).psi_slope;
-    cut.stiffness = bending_stiffness(x);
+    cut.stiffness = turned(own_bending(x), x);
     if (!(x < length_)) return cut;
     std::vector<double> beyond;
     for (const double kink : kinks(material_, strains_)) {
@@ -128,6 +129,30 @@ class Beam final : public Body, private Rod {
       if (!inertia.isZero(0)) cut.sections.push_back({inertia, *station(s)});
     }
     return cut;
+  }
+  Matrix3 section_axes(double x) const override {
+    if (!material_.twist) return Matrix3::Identity();
+    const double beta = material_.twist->angle(x), c = std::cos(beta), s = std::sin(beta);
+    Matrix3 axes;
+    axes << 1, 0, 0, 0, c, -s, 0, s, c;
+    return axes;
+  }
+  /// About the sections' axes x, y_s, z_s, then along them.
+  std::vector<Eigen::MatrixXd> stiffness_by_strain() const override {
+    const Eigen::Index n = shape_.modes();
+    std::vector<Eigen::MatrixXd> parts(6, Eigen::MatrixXd::Zero(n, n));
+    const auto& x = quadrature_.nodes();
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const LinearFields f = linear_fields(strains_, x[k]);
+      const Vector3 bending = own_bending(x[k]), elongation = own_elongation(x[k]);
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const auto part = static_cast<std::size_t>(axis);
+        const Matrix3 along = turned(quadrature_.weights()[k] * Vector3::Unit(axis), x[k]);
+        if (bending[axis] > 0) add_products(bending[axis] * along, f.psi_slope, parts[part]);
+        if (elongation[axis] > 0) add_products(elongation[axis] * along, f.gamma, parts[3 + part]);
+      }
+    }
+    return parts;
   }
   const Rod* rod() const override {
     // The exact rod is inextensible, without rotary inertia in bending, and clamped at x = 0. Shape functions that
@@ -199,33 +224,27 @@ class Beam final : public Body, private Rod {
     return x;
   }
 
-  /// Axes of the section at x in those of the body, as columns.
-  [[nodiscard]] Matrix3 section_axes(double x) const {
-    const double beta = material_.twist->angle(x), c = std::cos(beta), s = std::sin(beta);
-    Matrix3 axes;
-    axes << 1, 0, 0, 0, c, -s, 0, s, c;
-    return axes;
-  }
   /// C of the section at x, given about its own axes, in those of the body.
   [[nodiscard]] Matrix3 turned(const Vector3& own, double x) const {
     if (!material_.twist) return own.asDiagonal();
     const Matrix3 T = section_axes(x);
     return T * own.asDiagonal() * T.transpose();
   }
-  /// GJ, EI_y, EI_z at x [N m²], zero where the body has no such strain.
-  [[nodiscard]] Matrix3 bending_stiffness(double x) const {
+  /// GJ, EI_y, EI_z at x [N m²] about the section's own axes, zero where the body has no such strain.
+  [[nodiscard]] Vector3 own_bending(double x) const {
     Vector3 own = Vector3::Zero();
     for (const BeamStrain& s : strains_)
       if (s.kind != BeamData::Strain::elongation) own += s.stiffness(x) * s.direction.cwiseAbs();
     if (const std::optional<BeamTwist>& t = material_.twist) own.tail<2>() << t->EI_y(x), t->EI_z(x);
-    return turned(own, x);
+    return own;
   }
-  /// EA, kGA_y, kGA_z at x [N] of a twisted beam.
-  [[nodiscard]] Matrix3 elongation_stiffness(double x) const {
-    Vector3 own(0, material_.twist->shear_y(x), material_.twist->shear_z(x));
+  /// EA, kGA_y, kGA_z at x [N] likewise.
+  [[nodiscard]] Vector3 own_elongation(double x) const {
+    Vector3 own = Vector3::Zero();
     for (const BeamStrain& s : strains_)
-      if (s.kind == BeamData::Strain::elongation && s.direction == Vector3::UnitX()) own.x() = s.stiffness(x);
-    return turned(own, x);
+      if (s.kind == BeamData::Strain::elongation) own += s.stiffness(x) * s.direction;
+    if (const std::optional<BeamTwist>& t = material_.twist) own.tail<2>() << t->shear_y(x), t->shear_z(x);
+    return own;
   }
   /// Rotary inertia of a length at x [kg m²].
   [[nodiscard]] Matrix3 section_inertia(double piece, double x) const {

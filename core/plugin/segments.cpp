@@ -1,11 +1,11 @@
 #include "withy/core/plugin/segments.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
-#include <map>
 
+#include "withy/core/plugin/turned_sections.hpp"
 #include "withy/core/shape/modal_mass.hpp"
+#include "withy/core/shape/vibrations.hpp"
 
 namespace withy {
 namespace {
@@ -57,10 +57,13 @@ void cut_tables(Value& value, const std::vector<ParameterSpec>& specs, double x0
   }
 }
 
-/// "bending_y" of "bending_y[2]".
-std::string strain_of(const std::string& mode) { return mode.substr(0, mode.find('[')); }
+/// What the strains of a body hold: all of K where it tells of none.
+std::vector<Eigen::MatrixXd> stiffness_by_strain(const Body& body) {
+  const auto* sections = dynamic_cast<const TurnedSections*>(&body);
+  return sections != nullptr ? sections->stiffness_by_strain() : std::vector{body.shape().stiffness};
+}
 
-class DampedSegment final : public Body {
+class DampedSegment final : public Body, public TurnedSections {
  public:
   DampedSegment(std::unique_ptr<Body> segment, ModalShape shape)
       : segment_(std::move(segment)), shape_(std::move(shape)) {}
@@ -70,6 +73,11 @@ class DampedSegment final : public Body {
   std::string measured_station() const override { return segment_->measured_station(); }
   const Rod* rod() const override { return segment_->rod(); }
   std::optional<BodyCut> cut(double x) const override { return segment_->cut(x); }
+  Matrix3 section_axes(double x) const override {
+    const auto* sections = dynamic_cast<const TurnedSections*>(segment_.get());
+    return sections != nullptr ? sections->section_axes(x) : Matrix3::Identity();
+  }
+  std::vector<Eigen::MatrixXd> stiffness_by_strain() const override { return withy::stiffness_by_strain(*segment_); }
   std::vector<std::string> remarks() const override { return segment_->remarks(); }
 
  private:
@@ -104,34 +112,77 @@ Value segment_of(const Value& body, const std::vector<ParameterSpec>& specs, std
   return value;
 }
 
-/// τ of damping τ K by strain, as the lowest mode v of each has it: vᵀ D v / vᵀ K v, 2 ζ/ω where that has the ratio ζ.
-std::map<std::string, double> time_constants(const ModalShape& whole) {
-  std::map<std::string, std::vector<Eigen::Index>> strains;
-  for (Eigen::Index i = 0; i < whole.modes(); ++i)
-    strains[strain_of(whole.mode_names[static_cast<std::size_t>(i)])].push_back(i);
-  const Eigen::MatrixXd G = modal_mass(whole);
-  std::map<std::string, double> times;
-  for (const auto& [strain, at] : strains) {
-    const Eigen::MatrixXd K = whole.stiffness(at, at);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, G(at, at));
-    // Motions without strain come first and are not damped.
-    Eigen::Index lowest = 0;
-    while (lowest + 1 < K.rows() && solver.eigenvalues()[lowest] <= 1e-10 * solver.eigenvalues()[K.rows() - 1])
-      ++lowest;
-    const Eigen::VectorXd v = solver.eigenvectors().col(lowest);
-    const double stiffness = v.dot(K * v);
-    times[strain] = stiffness > 0 ? std::max(0.0, v.dot(whole.damping(at, at) * v)) / stiffness : 0.0;
+/// A mode of the whole that strains it.
+struct StrainedMode {
+  double square;           ///< ω² [1/s²]
+  double time;             ///< τ = vᵀDv/vᵀKv [s]
+  bool lowest;             ///< of those it is coupled with
+  Eigen::VectorXd shares;  ///< of its strain energy, by strain
+};
+
+/// Modes of some coordinates that no others are coupled with. Where G is singular each coordinate is taken for a mode.
+void add_modes_of(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& K, const Eigen::MatrixXd& G,
+                  const Eigen::MatrixXd& D, const std::vector<Eigen::MatrixXd>& strains,
+                  std::vector<StrainedMode>& modes) {
+  const auto n = static_cast<Eigen::Index>(group.size());
+  const Eigen::MatrixXd inertia = G(group, group), stiffness = K(group, group);
+  Vibrations found{stiffness.diagonal().cwiseQuotient(inertia.diagonal().cwiseMax(1e-300)),
+                   Eigen::MatrixXd::Identity(n, n)};
+  if (Eigen::LLT<Eigen::MatrixXd>(inertia).info() == Eigen::Success) found = vibrations(stiffness, inertia);
+  const double greatest = found.squares.maxCoeff();
+  const std::size_t first = modes.size();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (found.squares[k] <= 0 || is_rounding(found.squares[k], greatest)) continue;  // a motion without strain
+    const Eigen::VectorXd v = found.vectors.col(k);
+    Eigen::VectorXd energies(static_cast<Eigen::Index>(strains.size()));
+    for (std::size_t s = 0; s < strains.size(); ++s)
+      energies[static_cast<Eigen::Index>(s)] = std::max(0.0, v.dot(strains[s](group, group) * v));
+    if (!(energies.sum() > 0)) continue;
+    const double dissipation = std::max(0.0, v.dot(D(group, group) * v));
+    modes.push_back({found.squares[k], dissipation / energies.sum(), false, energies / energies.sum()});
   }
-  return times;
+  const auto slower = [](const StrainedMode& a, const StrainedMode& b) { return a.square < b.square; };
+  const auto lowest = std::min_element(modes.begin() + static_cast<std::ptrdiff_t>(first), modes.end(), slower);
+  if (lowest != modes.end()) lowest->lowest = true;
 }
 
-std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> segment) {
-  const std::map<std::string, double> times = time_constants(whole);
+/// τ [s] of damping Σ τ_s K_s by strain (in_segments). What a strain takes of a mode is the mode's share in it, until
+/// these add to one: a strain that the lowest mode is alone in has all of that mode's τ, whatever other modes are, and
+/// a slight coupling of strains changes their τ slightly.
+Eigen::VectorXd time_constants(const Body& whole) {
+  const ModalShape& shape = whole.shape();
+  const std::vector<Eigen::MatrixXd> strains = stiffness_by_strain(whole);
+  Eigen::VectorXd times = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(strains.size()));
+  if (shape.modes() == 0 || shape.damping.isZero(0)) return times;
+  const Eigen::MatrixXd G = modal_mass(shape);
+  std::vector<StrainedMode> modes;
+  for (const auto& group : coupled_coordinates(shape.stiffness, G))
+    add_modes_of(group, shape.stiffness, G, shape.damping, strains, modes);
+  std::stable_sort(modes.begin(), modes.end(),
+                   [](const StrainedMode& a, const StrainedMode& b) { return a.square < b.square; });
+  Eigen::VectorXd left = Eigen::VectorXd::Ones(times.size());
+  std::vector<Eigen::VectorXd> taken;
+  for (const StrainedMode& mode : modes) {
+    taken.push_back(mode.shares.cwiseMin(left));
+    left -= taken.back();
+    times += mode.time * taken.back();
+  }
+  for (Eigen::Index s = 0; s < times.size(); ++s)
+    if (left[s] < 1) times[s] /= 1 - left[s];
+  // The lowest modes exactly, by the strains that count them, unless lower ones have filled these.
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    const double counted = modes[k].shares.dot(taken[k]);
+    if (!modes[k].lowest || counted < 1e-3) continue;
+    times += (modes[k].time - modes[k].shares.dot(times)) / counted * taken[k];
+  }
+  return times.cwiseMax(0);
+}
+
+std::unique_ptr<Body> damped_as(const Eigen::VectorXd& times, std::unique_ptr<Body> segment) {
   ModalShape shape = segment->shape();
-  Eigen::VectorXd scale(shape.modes());
-  for (Eigen::Index i = 0; i < shape.modes(); ++i)
-    scale[i] = std::sqrt(times.at(strain_of(shape.mode_names[static_cast<std::size_t>(i)])));
-  shape.damping = scale.asDiagonal() * shape.stiffness * scale.asDiagonal();
+  const std::vector<Eigen::MatrixXd> strains = stiffness_by_strain(*segment);
+  shape.damping.setZero();
+  for (Eigen::Index s = 0; s < times.size(); ++s) shape.damping += times[s] * strains.at(static_cast<std::size_t>(s));
   return std::make_unique<DampedSegment>(std::move(segment), std::move(shape));
 }
 
@@ -142,11 +193,12 @@ std::unique_ptr<Body> in_segments(std::unique_ptr<Body> whole, const Value& valu
                                   const std::function<std::unique_ptr<Body>(const Value& segment)>& make) {
   const std::size_t n = value.has("segments") ? value.count_at("segments") : 1;
   if (n == 1) return whole;
+  const Eigen::VectorXd times = time_constants(*whole);
   std::vector<std::shared_ptr<const Body>> segments;
   for (std::size_t k = 0; k < n; ++k) {
     auto segment = make(segment_of(value, specs, k, n));
     if (segment == nullptr) return nullptr;
-    segments.push_back(damped_as(whole->shape(), std::move(segment)));
+    segments.push_back(damped_as(times, std::move(segment)));
   }
   return std::make_unique<SegmentedBody>(std::move(whole), std::move(segments));
 }

@@ -12,10 +12,12 @@ namespace withy {
 
 /// The body cut into as many segments of equal length as `segments` in its checked value says: itself where that is 1.
 /// Segment k is made from the value with `length` divided and all tables over x cut, between x = k L/n and (k + 1) L/n.
-/// It is damped in proportion to its stiffness, D = τ K, such that the whole is damped as `whole` says: every strain,
-/// as "bending_y", has its own τ = vᵀDv/vᵀKv from the lowest mode v of the whole: 2 ζ/ω₁ where that has the ratio ζ, so
-/// that whole modes of frequency ω have ζ ω/ω₁. Modal damping of the segment's own modes would leave next to
-/// nothing: they are about n² as fast as those of the whole.
+/// It is damped in proportion to its stiffness, D = Σ τ_s K_s with K_s of its strains (TurnedSections), such
+/// that the whole is damped as `whole` says. A mode v of the whole has τ = vᵀDv/vᵀKv, 2 ζ/ω where its ratio is ζ; a
+/// strain has that of the lowest mode which strains it, so that whole modes of frequency ω have ζ ω/ω₁. Where several
+/// strains share in modes, each has the mean over the lowest modes whose shares in it add to one, and is set such that
+/// the lowest of all has its τ exactly. Modal damping of the segment's own modes would leave next to nothing: they are
+/// about n² as fast as those of the whole.
 /// \param value  checked, with `length` [m] and `segments`
 /// \param specs  of the value's members
 /// \param make   makes a body of the value of a segment; null after it has reported

@@ -185,15 +185,13 @@ TEST_F(Segments, beam_held_at_its_tip_is_the_same_beam) {
   EXPECT_NEAR(tip_of(b, at_rest(b), "boom.root").y(), tip_of(a, at_rest(a)).y(), 1e-10);
 }
 
-/// Damping ratio 2 % of a cantilever in 8 segments: τ = 2ζ/ω_w, ω_w = 3.53273 the first frequency of two polynomials on
-/// the whole beam, so that the first mode, ω₁ = 1.8751² (Blevins), has ζ ω₁/ω_w.
-TEST_F(Segments, first_mode_has_the_damping_of_the_whole_beams_first_mode) {
-  const std::string text =
-      "format: withy/1\ntime: {end: 1}\nbodies: {boom: {type: beam, length: 1, mass_per_length: 1, damping_ratio: "
-      "0.02, "
-      "segments: 8, bending_y: {stiffness: 1, modes: 2, family: orthogonal-polynomials}}}\n"
-      "hinges: {root: {type: weld, parent: world, child: boom}}\n";
-  const Compiled c = compiled(text);
+struct DampedMode {
+  double omega;  ///< [rad/s]
+  double ratio;  ///< vᵀDv/(2ω) with vᵀMv = 1
+};
+
+/// Modes of a tree at rest, by differences of its forces.
+std::vector<DampedMode> modes_of(const Compiled& c) {
   const DenseSystem rest = c.equations->system(0, c.scene.initial.y);
   const auto n = static_cast<Eigen::Index>(rest.size);
   const Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(rest.mass.data(), n, n);
@@ -210,10 +208,68 @@ TEST_F(Segments, first_mode_has_the_damping_of_the_whole_beams_first_mode) {
   };
   const Eigen::MatrixXd K = derivative(0), D = derivative(c.equations->layout().positions);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (K + K.transpose()), M);
-  const double omega = std::sqrt(eigen.eigenvalues()[0]);
-  EXPECT_NEAR(omega, 3.5160153, 1e-4);
-  const Eigen::VectorXd mode = eigen.eigenvectors().col(0);
-  EXPECT_NEAR(mode.dot(D * mode) / (2 * omega), 0.02 * omega / 3.53273, 1e-6);
+  std::vector<DampedMode> modes;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double omega = std::sqrt(eigen.eigenvalues()[k]);
+    const Eigen::VectorXd v = eigen.eigenvectors().col(k);
+    modes.push_back({omega, v.dot(D * v) / (2 * omega)});
+  }
+  return modes;
+}
+
+/// A cantilever of polynomials with a damping ratio of 2 % and what else `more` gives it.
+std::string damped_cantilever(int segments, const std::string& more) {
+  return "format: withy/1\ntime: {end: 1}\nbodies: {boom: {type: beam, length: 1, mass_per_length: 1, damping_ratio: "
+         "0.02, segments: " +
+         std::to_string(segments) + ", " + more + "}}\nhinges: {root: {type: weld, parent: world, child: boom}}\n";
+}
+std::string planes(int modes) {
+  const std::string rest = ", modes: " + std::to_string(modes) + ", family: orthogonal-polynomials}";
+  return "bending_y: {stiffness: 1" + rest + ", bending_z: {stiffness: 25" + rest;
+}
+
+/// Damping ratio 2 % of a cantilever in 8 segments: τ = 2ζ/ω_w, ω_w = 3.53273 the first frequency of two polynomials on
+/// the whole beam, so that the first mode, ω₁ = 1.8751² (Blevins), has ζ ω₁/ω_w.
+TEST_F(Segments, first_mode_has_the_damping_of_the_whole_beams_first_mode) {
+  const std::vector<DampedMode> modes =
+      modes_of(compiled(damped_cantilever(8, "bending_y: {stiffness: 1, modes: 2, family: orthogonal-polynomials}")));
+  EXPECT_NEAR(modes[0].omega, 3.5160153, 1e-4);
+  EXPECT_NEAR(modes[0].ratio, 0.02 * modes[0].omega / 3.53273, 1e-6);
+}
+
+/// Twist of one angle is the turned beam: each mode has the ratio that it has without twist, and the first of either
+/// plane that of the whole.
+TEST_F(Segments, twist_of_one_angle_leaves_the_damping_of_each_mode) {
+  const std::vector<DampedMode> turned = modes_of(compiled(damped_cantilever(4, planes(2) + ", twist: 45 deg")));
+  const std::vector<DampedMode> straight = modes_of(compiled(damped_cantilever(4, planes(2))));
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(turned[k].omega, straight[k].omega, 1e-5 * straight[k].omega);
+    EXPECT_NEAR(turned[k].ratio, straight[k].ratio, 1e-5) << "mode " << k + 1;
+  }
+  EXPECT_NEAR(straight[0].ratio, 0.02, 2e-4);
+  EXPECT_NEAR(straight[1].ratio, 0.02, 2e-4) << "of the stiff plane";
+}
+
+/// The lowest mode has ζ ω/ω_w, by the whole's frequency ω_w, whatever couples its strains, as far as the whole's modes
+/// are those of the segments; those above it have no less than ζ.
+TEST_F(Segments, lowest_mode_of_coupled_strains_has_the_damping_of_the_wholes) {
+  const std::string shear =
+      "bending_y: {stiffness: 1, modes: 3, family: orthogonal-polynomials, rotary_inertia: 1e-3}, shear_y: {stiffness: "
+      "8, modes: 3, family: orthogonal-polynomials}";
+  for (const std::string& more : {planes(6) + ", twist: [[0, 0], [1, 90 deg]]", shear}) {
+    const double whole = modes_of(compiled(damped_cantilever(1, more)))[0].omega;
+    const std::vector<DampedMode> modes = modes_of(compiled(damped_cantilever(4, more)));
+    EXPECT_NEAR(modes[0].ratio, 0.02 * modes[0].omega / whole, 0.02 * 0.02) << more;
+    for (std::size_t k = 1; k < 4; ++k) EXPECT_GT(modes[k].ratio, 0.0199) << more << ", mode " << k + 1;
+  }
+}
+
+/// A twist that hardly turns couples the planes, and changes next to nothing.
+TEST_F(Segments, slight_twist_changes_the_damping_slightly) {
+  const std::vector<DampedMode> straight = modes_of(compiled(damped_cantilever(4, planes(2))));
+  const std::vector<DampedMode> twisted =
+      modes_of(compiled(damped_cantilever(4, planes(2) + ", twist: [[0, 0], [1, 0.02 deg]]")));
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(twisted[k].ratio, straight[k].ratio, 1e-5) << "mode " << k + 1;
 }
 
 /// The driven arm with 4 segments of two polynomials a link, `quadratic`: the end of the arm at 10 s against the
