@@ -7,24 +7,25 @@
 #include <stdexcept>
 
 #include "frame_sensor.hpp"
+#include "withy/core/plugin/turned_sections.hpp"
 
 namespace withy {
 namespace {
 
-/// Section moduli [m³], for stresses of bending.
+/// Section moduli about the section's own axes [m³], for stresses of bending.
 struct Moduli {
   double y, z;
 };
 
-/// How far the outermost fibres are from the axes of bending [m], for their strains.
+/// How far the outermost fibres are from the section's own axes [m], for their strains.
 struct Fibres {
   double y, z;
 };
 
 class BoundSection final : public BoundSensor {
  public:
-  BoundSection(SectionPlace place, std::optional<Moduli> moduli, std::optional<Fibres> fibres)
-      : place_(place), moduli_(moduli), fibres_(fibres) {}
+  BoundSection(SectionPlace place, const Matrix3& axes, std::optional<Moduli> moduli, std::optional<Fibres> fibres)
+      : place_(place), axes_(axes), moduli_(moduli), fibres_(fibres) {}
   std::vector<SensorColumn> columns() const override {
     std::vector<SensorColumn> c;
     add_columns(c, "f", "N");
@@ -45,17 +46,20 @@ class BoundSection final : public BoundSensor {
     put(load.curvature, values);
     put(load.elastic, values);
     if (moduli_) {
-      values[0] = load.inner.moment.y() / moduli_->y;
-      values[1] = load.inner.moment.z() / moduli_->z;
+      const Vector3 moment = axes_.transpose() * load.inner.moment;
+      values[0] = moment.y() / moduli_->y;
+      values[1] = moment.z() / moduli_->z;
       values = values.subspan(2);
     }
     if (!fibres_) return;
-    values[0] = -load.curvature.y() * fibres_->y;
-    values[1] = -load.curvature.z() * fibres_->z;
+    const Vector3 curvature = axes_.transpose() * load.curvature;
+    values[0] = -curvature.y() * fibres_->y;
+    values[1] = -curvature.z() * fibres_->z;
   }
 
  private:
   SectionPlace place_;
+  Matrix3 axes_;  ///< the section's own, which moduli and fibres are of
   std::optional<Moduli> moduli_;
   std::optional<Fibres> fibres_;
 };
@@ -79,7 +83,9 @@ class SectionSensor final : public Sensor {
       // A place between two segments belongs to the outer one; the sum of their lengths may be off by rounding.
       if (x < own || (last && x <= own * (1 + 1e-9))) {
         const SectionPlace place{piece, std::min(x, own)};
-        return std::make_unique<BoundSection>(place, moduli_, fibres_);
+        const auto* turned = dynamic_cast<const TurnedSections*>(&body);
+        const Matrix3 axes = turned != nullptr ? turned->section_axes(place.x) : Matrix3::Identity();
+        return std::make_unique<BoundSection>(place, axes, moduli_, fibres_);
       }
       x -= own;
     }
@@ -111,13 +117,13 @@ void enroll_section(Enrollment& enrollment) {
        .parameters = {text("of", "beam that is cut").naming(ParameterSpec::Refers::body),
                       number("at", "m", "coordinate along the beam").least(0),
                       map("moduli",
-                          {number("y", "m^3", "section modulus about y").above(0),
-                           number("z", "m^3", "section modulus about z").above(0)},
+                          {number("y", "m^3", "section modulus about y, or where it is twisted y_s").above(0),
+                           number("z", "m^3", "section modulus about z or z_s").above(0)},
                           "for the bending stresses m/W at the outermost fibres")
                           .optional(),
                       map("fibres",
-                          {number("y", "m", "distance of the outermost fibre from the y axis").least(0),
-                           number("z", "m", "distance of the outermost fibre from the z axis").least(0)},
+                          {number("y", "m", "distance of the outermost fibre from the y or y_s axis").least(0),
+                           number("z", "m", "distance of the outermost fibre from the z or z_s axis").least(0)},
                           "for the bending strains -k c there")
                           .optional()},
        .make = &make_section});

@@ -1,6 +1,8 @@
 /// \file
 /// Reactions of hinges and inner forces of beams against the dense reference of a tree whose hinge is freed, and closed
 /// forms.
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 
 #include "sensed_case.hpp"
@@ -184,6 +186,58 @@ TEST(Sections, of_a_bent_beam_show_strains_of_the_sign_of_stresses) {
   EXPECT_GT(std::abs(of("strain_y")), 1e-5);
   EXPECT_GT(std::abs(of("strain_z")), 1e-5);
   EXPECT_EQ(of("stress_y"), of("my"));
+}
+
+/// Moduli and fibres are about the axes that twist turns: a beam twisted by one angle is one that is turned about its
+/// axis, and shows the stresses and strains of that in the same motion. Its moments and curvatures are of axes that do
+/// not turn.
+TEST(Sections, of_a_twisted_beam_have_stresses_about_their_own_axes) {
+  const double beta = 0.7, c = std::cos(beta), s = std::sin(beta);
+  const auto beam = [](const std::string& twist, const std::string& offset, const std::string& segments) {
+    return "format: withy/1\ntime: {end: 1}\nbodies: {boom: {type: beam, length: 2, mass_per_length: 1.5" + twist +
+           segments +
+           ", bending_y: {stiffness: 40, modes: 2, family: orthogonal-polynomials}, bending_z: {stiffness: 90, modes: "
+           "2, "
+           "family: orthogonal-polynomials}}}\nhinges: {root: {type: weld, parent: world, child: boom" +
+           offset +
+           "}}\nloads: {push: {type: force, frame: boom.tip, law: constant, value: [0, 3, -1]}}\noutputs: {cut: {type: "
+           "section, of: boom, at: 0.3, moduli: {y: 0.1, z: 0.2}, fibres: {y: 0.01, z: 0.02}}}\n";
+  };
+  for (const std::string segments : {"", ", segments: 2"}) {
+    Case twisted(beam(", twist: 0.7", "", segments), "quadratic");
+    Case turned(
+        beam("",
+             fmt::format(", offset: {{orientation: [{:.17g}, {:.17g}, 0, 0]}}", std::cos(beta / 2), std::sin(beta / 2)),
+             segments),
+        "quadratic");
+    const std::size_t pieces = twisted.state.y.size() / 8;
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+      for (std::size_t i = 4 * piece; i < 4 * piece + 2; ++i) {
+        const double v = 0.02 / (1.0 + static_cast<double>(i)), w = -0.013;
+        twisted.state.y[i] = v;
+        twisted.state.y[i + 2] = w;
+        turned.state.y[i] = c * v + s * w;
+        turned.state.y[i + 2] = -s * v + c * w;
+      }
+    }
+    const auto seen = [](Case& scene) {
+      SensorReader reader(scene.scene.outputs, *scene.equations);
+      std::vector<double> values(reader.columns().size());
+      EXPECT_TRUE(reader.read(scene.state, values));
+      return values;
+    };
+    const std::vector<double> a = seen(twisted), b = seen(turned);
+    ASSERT_EQ(a.size(), 16u);
+    for (std::size_t first : {0u, 3u, 6u, 9u}) {  // force, moment, curvature, elastic moment
+      EXPECT_NEAR(a[first], b[first], 1e-10);
+      EXPECT_NEAR(a[first + 1], c * b[first + 1] - s * b[first + 2], 1e-10);
+      EXPECT_NEAR(a[first + 2], s * b[first + 1] + c * b[first + 2], 1e-10);
+    }
+    for (std::size_t i = 12; i < 16; ++i) {  // stresses and strains
+      EXPECT_NEAR(a[i], b[i], 1e-10 * (1 + std::abs(b[i])));
+      EXPECT_GT(std::abs(b[i]), 1e-5);
+    }
+  }
 }
 
 /// A scene counts along the whole of a beam in segments: at a joint the section carries what the weld there does.
