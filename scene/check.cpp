@@ -110,11 +110,19 @@ bool Checker::refers(const Place& place, const std::string& name, ParameterSpec:
                                            : names_->frames;
   if (known.has(name)) return true;
   if (what == signal && known.has(name.substr(0, name.find('.')))) return true;
-  // A station is a frame where a hinge uses it.
-  const bool on_body = what == frame && names_->bodies.has(name.substr(0, name.find('.')));
-  diagnostics_.error(place, fmt::format("no {} {}{}{}", referent(what), in_quotes(name), suggest(name, known.names()),
-                                        on_body ? "; frames of the body name its other places" : ""));
+  if (what == frame) {
+    no_frame(place, name, *names_);
+  } else {
+    diagnostics_.error(place, fmt::format("no {} {}{}", referent(what), in_quotes(name), suggest(name, known.names())));
+  }
   return false;
+}
+
+void Checker::no_frame(const Place& place, const std::string& name, const SceneNames& names) const {
+  const NameList& known = names.places.names().empty() ? names.frames : names.places;
+  const bool on_body = names.bodies.has(name.substr(0, name.find('.')));
+  diagnostics_.error(place, fmt::format("no frame {}{}{}", in_quotes(name), suggest(name, known.names()),
+                                        on_body ? "; frames of the body name its other places" : ""));
 }
 
 std::optional<Value> Checker::mode_family(const Value& value) const {

@@ -38,7 +38,9 @@ class NameList {
 struct SceneNames {
   NameList bodies;
   NameList hinges;
-  NameList frames;  ///< "body" and "body.frame"
+  NameList frames;  ///< "body" and "body.frame", with the stations that the scene names
+  /// Where the scene names places that bodies have not: all frames and the stations of these bodies, for messages.
+  NameList places;
   NameList loads;
   NameList signals;  ///< columns of hinges, outputs and loads, without what stands behind a dot of the latter two
   bool frames_complete = true;  ///< false where a body could not be made: any frame name is taken then
@@ -90,6 +92,8 @@ class Checker {
   /// suggestion() where it is cheap or among the first: of a thousand wrong names nobody reads what each may have
   /// meant, and among thousands of candidates it takes long to say.
   std::string suggest(std::string_view name, const std::vector<std::string>& candidates) const;
+  /// Reports that there is no such frame, with the nearest one.
+  void no_frame(const Place& place, const std::string& name, const SceneNames& names) const;
   /// Reports a problem with a key rather than with its value.
   void key_error(const std::string& path, std::string message) const;
 

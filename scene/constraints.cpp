@@ -34,8 +34,7 @@ std::optional<FrameIndex> end_of(const Value* end, const SceneTree& tree, const 
   if (end->text() == "world") return FrameIndex{-1, 0};
   const SceneNames& names = tree.names;
   if (names.frames_complete && !names.frames.has(end->text())) {
-    checker.diagnostics().error(end->place(), fmt::format("no frame {}{}", in_quotes(end->text()),
-                                                          checker.suggest(end->text(), names.frames.names())));
+    checker.no_frame(end->place(), end->text(), names);
     return {};
   }
   return tree.model != nullptr ? tree.model->find_frame(end->text()) : std::nullopt;

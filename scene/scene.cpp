@@ -55,7 +55,7 @@ class SceneBuilder {
     SceneEvents events(given_events == nullptr ? Value::map({}) : *given_events, document_, checker_);
     Value hinges = part("hinges");
     events.loosen(hinges);
-    SceneTree tree = build_tree(part("bodies"), hinges, gravity_, checker_);
+    SceneTree tree = build_tree(part("bodies"), hinges, root, gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
     events.fasten(tree.hinges);
     scene_.source.set("hinges", std::move(tree.hinges));

@@ -25,13 +25,15 @@ class TreeBuilder {
  public:
   explicit TreeBuilder(const Checker& checker) : checker_(checker) {}
 
-  SceneTree build(const Value& bodies, const Value& hinges, const Vector3& gravity) {
+  SceneTree build(const Value& bodies, const Value& hinges, const Value& scene, const Vector3& gravity) {
     for (const auto& [name, value] : bodies.members()) bodies_.add(name, value);
     for (const auto& [name, value] : hinges.members()) add_hinge(name, value);
     for (const TreeBodies::Entry& entry : bodies_.entries()) weld_segments(entry);
     problems_.good = check_topology(tree_.names.bodies.names(), links_, checker_) && problems_.good;
     tree_.bodies = Value::map(std::move(bodies_.values()), bodies.place());
     tree_.hinges = Value::map(std::move(hinge_values_), hinges.place());
+    for (const auto& [key, value] : scene.members())
+      if (key != "bodies" && key != "hinges") bodies_.add_named_stations(value);
     bodies_.name_frames();
     tree_.names.frames_complete = problems_.good;
     if (!problems_.good) return std::move(tree_);
@@ -129,8 +131,9 @@ class TreeBuilder {
 
 }  // namespace
 
-SceneTree build_tree(const Value& bodies, const Value& hinges, const Vector3& gravity, const Checker& checker) {
-  return TreeBuilder(checker).build(bodies, hinges, gravity);
+SceneTree build_tree(const Value& bodies, const Value& hinges, const Value& scene, const Vector3& gravity,
+                     const Checker& checker) {
+  return TreeBuilder(checker).build(bodies, hinges, scene, gravity);
 }
 
 }  // namespace withy

@@ -19,8 +19,10 @@ struct SceneTree {
   Value hinges;                  ///< checked
 };
 
-/// Checks bodies and hinges, makes them, and puts them together. Null values stand for missing ones.
-SceneTree build_tree(const Value& bodies, const Value& hinges, const Vector3& gravity, const Checker& checker);
+/// Checks bodies and hinges, makes them, and puts them together. Null values stand for missing ones. A station of a
+/// body becomes a frame where a hinge or `scene`, the whole scene as it is given, names it.
+SceneTree build_tree(const Value& bodies, const Value& hinges, const Value& scene, const Vector3& gravity,
+                     const Checker& checker);
 
 /// Bytes of memory that the modes asked for in a body's checked value need, at most about: by far the greatest part of
 /// a model.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include "withy/core/model/validate.hpp"
@@ -16,6 +17,18 @@ namespace withy {
 namespace {
 
 constexpr double most_bytes = 4.0 * 1024 * 1024 * 1024;
+
+/// The names among what a body says of its stations, the first of them: for messages.
+std::vector<std::string> station_names(const Body& body) {
+  constexpr std::size_t most = 100;
+  std::vector<std::string> names;
+  std::istringstream words(body.stations());
+  for (std::string word; names.size() < most && words >> word;) {
+    if (word.ends_with(',')) word.pop_back();
+    if (body.station(word)) names.push_back(word);
+  }
+  return names;
+}
 
 Vector3 vector_of(const Value& list) {
   const std::vector<double> x = list.numbers();
@@ -204,29 +217,61 @@ int TreeBodies::find(const Value& end, const std::string& name) {
   return -2;
 }
 
+bool TreeBodies::is_made(const Entry& entry) const {
+  for (int i = entry.first; i < entry.first + entry.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (at >= nodes_.size() || nodes_[at].body == nullptr) return false;
+  }
+  return true;
+}
+
+/// A frame of a body, or of the station that it has by this name; node −1 where there is none.
+TreeBodies::NodeFrame TreeBodies::find_frame(const Entry& entry, const std::string& name) {
+  const int last = entry.first + entry.count - 1;
+  BodyNode& outermost = nodes_[static_cast<std::size_t>(last)];
+  if (const int tip = outermost.frame("tip"); name == "tip" && tip >= 0) return {last, tip};
+  for (int i = entry.first; i <= last; ++i)
+    if (const int index = nodes_[static_cast<std::size_t>(i)].frame(name); index >= 0) return {i, index};
+  const auto section = entry.count == 1 ? outermost.body->station(name) : std::nullopt;
+  if (!section) return {};
+  outermost.frames.push_back({name, *section, {}});
+  return {last, static_cast<int>(outermost.frames.size()) - 1};
+}
+
+/// Names of a body's frames and stations, for messages.
+std::vector<std::string> TreeBodies::places_of(const Entry& entry) const {
+  NameList places;
+  for (int i = entry.first; i < entry.first + entry.count; ++i) {
+    const BodyNode& node = nodes_[static_cast<std::size_t>(i)];
+    for (const Frame& f : node.frames) places.add(f.name);
+    for (std::string& name : station_names(*node.body)) places.add(std::move(name));
+  }
+  return places.names();
+}
+
 TreeBodies::NodeFrame TreeBodies::frame(const Value& end, int body, const std::string& name) {
   if (body < 0) return {};
   const Entry& entry = entries_[static_cast<std::size_t>(body)];
-  const auto node = [&](int i) -> BodyNode& { return nodes_[static_cast<std::size_t>(i)]; };
-  for (int i = entry.first; i < entry.first + entry.count; ++i) {
-    if (static_cast<std::size_t>(i) >= nodes_.size() || node(i).body == nullptr) return {};  // reported already
-  }
-  const int last = entry.first + entry.count - 1;
-  if (name == "tip" && node(last).frame(name) >= 0) return {last, node(last).frame(name)};
-  std::vector<std::string> known;
-  for (int i = entry.first; i <= last; ++i) {
-    if (const int index = node(i).frame(name); index >= 0) return {i, index};
-    for (const Frame& f : node(i).frames) {
-      if (std::find(known.begin(), known.end(), f.name) == known.end()) known.push_back(f.name);
-    }
-  }
-  if (const auto section = entry.count == 1 ? node(last).body->station(name) : std::nullopt) {
-    node(last).frames.push_back({name, *section, {}});
-    return {last, static_cast<int>(node(last).frames.size()) - 1};
-  }
+  if (!is_made(entry)) return {};  // reported already
+  const NodeFrame found = find_frame(entry, name);
+  if (found.node >= 0) return found;
   problems_.error(end, fmt::format("body '{}' has no frame {}{}; its frames name other places of it", entry.name,
-                                   in_quotes(name), checker_.suggest(name, known)));
+                                   in_quotes(name), checker_.suggest(name, places_of(entry))));
   return {};
+}
+
+void TreeBodies::add_named_stations(const Value& value) {
+  for (const Value& item : value.items()) add_named_stations(item);
+  for (const auto& [key, member] : value.members()) add_named_stations(member);
+  if (value.kind() != Value::Kind::text) return;
+  const std::string& text = value.text();
+  const std::size_t dot = text.find('.');
+  if (dot == std::string::npos) return;
+  const auto it = index_.find(text.substr(0, dot));
+  if (it == index_.end()) return;
+  const Entry& entry = entries_[static_cast<std::size_t>(it->second)];
+  if (!is_made(entry) || find_frame(entry, text.substr(dot + 1)).node >= 0) return;
+  for (const std::string& place : places_of(entry)) tree_.names.places.add(entry.name + "." + place);
 }
 
 void TreeBodies::name_frames() {
@@ -242,6 +287,10 @@ void TreeBodies::name_frames() {
         tree_.names.frames.add(entry.name + "." + f.name);
     }
   }
+  if (tree_.names.places.names().empty()) return;
+  NameList places = tree_.names.frames;
+  for (const std::string& name : tree_.names.places.names()) places.add(name);
+  tree_.names.places = std::move(places);
 }
 
 }  // namespace withy

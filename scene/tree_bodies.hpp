@@ -52,6 +52,8 @@ class TreeBodies {
   /// A frame of a body; a station it has becomes a frame when it is asked for. Node −1 after reporting.
   /// \param body index in entries(), negative where none was found
   NodeFrame frame(const Value& end, int body, const std::string& name);
+  /// Makes frames of the stations that texts in a value name as "body.station".
+  void add_named_stations(const Value& value);
   /// Notes the node of a body that its inboard hinge holds.
   void hold(int body, int node) { entries_[static_cast<std::size_t>(body)].held = node; }
   /// Adds the names of all frames to those that other values may refer to.
@@ -68,6 +70,9 @@ class TreeBodies {
   std::optional<Terms> terms_of(const Value& given);
   void add_ends(BodyNode& node, const Value& value);
   void add_frames(const Value& frames, const Body& whole);
+  [[nodiscard]] bool is_made(const Entry& entry) const;
+  NodeFrame find_frame(const Entry& entry, const std::string& name);
+  [[nodiscard]] std::vector<std::string> places_of(const Entry& entry) const;
   std::optional<PointExpansion> section_of(const Body::StationName& station, BodyNode*& node);
 
   TreeProblems& problems_;

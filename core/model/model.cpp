@@ -218,9 +218,11 @@ std::optional<FrameIndex> Model::find_frame(std::string_view name) const {
     return {};
   };
   if (auto root = lookup(segments(name), "root")) return root;
-  const std::size_t dot = name.rfind('.');
-  if (dot == std::string_view::npos) return {};
-  return lookup(segments(name.substr(0, dot)), name.substr(dot + 1));
+  // Segments have a dot in their names, and places such as "(0.6, -0.2)" may have some.
+  for (std::size_t dot = name.find('.'); dot != std::string_view::npos; dot = name.find('.', dot + 1)) {
+    if (auto frame = lookup(segments(name.substr(0, dot)), name.substr(dot + 1))) return frame;
+  }
+  return {};
 }
 
 State Model::reference_state() const {

@@ -41,10 +41,59 @@ outputs:
       problems(replaced(good_scene, "law: sine", "law: sinus") + parts, registry),
       "s.yaml:21:53: /loads/motor/law: got \"sinus\": did you mean 'sine'?; need one of: constant, sine, table, "
       "steps\n"
-      "s.yaml:24:60: /constraints/loop/a: no frame \"boom.tpi\"; did you mean 'boom.tip'?\n"
+      "s.yaml:24:60: /constraints/loop/a: no frame \"boom.tpi\"; did you mean 'boom.tip'?; frames of the body name its "
+      "other places\n"
       "s.yaml:28:28: /outputs/place/of: no frame \"boom.tpi\"; did you mean 'boom.tip'?; frames of the body name its "
       "other places\n"
       "s.yaml:31:3: /outputs/other_closing: there is no constraint 'otter'");
+}
+
+/// A plate that no hinge holds but at its root: its corners, a place on it, and a node of a finite-element model.
+const std::string with_stations = R"(format: withy/1
+time: {end: 1.0}
+bodies:
+  panel: {type: plate, length: 1.2, width: 0.7, mass_per_area: 2.7, stiffness: 5}
+  roof: {type: modal, file: )" WITHY_SOURCE_DIRECTORY R"(/tests/reference/sid/cartopPragV32.SID_FEM}
+hinges:
+  a: {type: weld, parent: world, child: panel}
+  b: {type: weld, parent: world, child: roof}
+constraints:
+  held: {type: hinge, hinge: spherical, a: world, b: panel.left, offset: {position: [1.2, 0.35, 0]}}
+loads:
+  push: {type: force, frame: panel.right, law: constant, value: [0, 0, 1]}
+  cable: {type: spring-damper, frame: panel.tip, to: roof.12, stiffness: 1, free_length: 0.1}
+outputs:
+  corner: {type: frame, of: panel.left}
+  place: {type: frame, of: 'panel.(0.6, -0.2)'}
+  node: {type: frame, of: roof.12}
+)";
+
+TEST_F(BadDocuments, StationsAreFramesWhereverTheyAreNamed) {
+  EXPECT_EQ(problems(with_stations, registry), "");
+  const Scene scene = parse_scene(with_stations, "s.yaml", registry, {});
+  for (const char* frame : {"panel.left", "panel.right", "panel.(0.6, -0.2)", "roof.12"}) {
+    const std::optional<FrameIndex> at = scene.model->find_frame(frame);
+    ASSERT_TRUE(at) << frame;
+    EXPECT_EQ(
+        scene.model->bodies()[static_cast<std::size_t>(at->body)].frames[static_cast<std::size_t>(at->frame)].name,
+        std::string(frame).substr(std::string(frame).find('.') + 1));
+  }
+  EXPECT_FALSE(scene.model->find_frame("panel.(0.6, 0.2)")) << "nothing names it";
+}
+
+TEST_F(BadDocuments, AWrongStationIsReportedWithTheNearest) {
+  EXPECT_EQ(
+      problems(replaced(replaced(with_stations, "frame: panel.right", "frame: panel.rigt"), "of: panel.left",
+                        "of: panel.lefft"),
+               registry),
+      "s.yaml:12:30: /loads/push/frame: no frame \"panel.rigt\"; did you mean 'panel.right'?; frames of the body "
+      "name its other places\n"
+      "s.yaml:15:29: /outputs/corner/of: no frame \"panel.lefft\"; did you mean 'panel.left'?; frames of the body "
+      "name its other places");
+  EXPECT_EQ(
+      problems(replaced(with_stations, "parent: world, child: roof", "parent: panel.rigt, child: roof"), registry),
+      "s.yaml:8:27: /hinges/b/parent: body 'panel' has no frame \"rigt\"; did you mean 'right'?; its frames name "
+      "other places of it");
 }
 
 TEST_F(BadDocuments, TheErrorCarriesPlaceAndMessageForPrograms) {

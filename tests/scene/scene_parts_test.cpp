@@ -99,6 +99,18 @@ TEST_F(SceneParts, WhatRestsOnNamesIsCheckedAgainstTheNamesOfItsOwnScene) {
   EXPECT_EQ(problems, 1);
 }
 
+TEST_F(SceneParts, StationsAreFramesOfTheScenesThatNameThem) {
+  const std::string text = replaced(good_scene, "hinges:",
+                                    "  panel: {type: plate, length: 1, width: 1, mass_per_area: 2, stiffness: 5}\n"
+                                    "hinges:\n  edge: {type: weld, parent: hub.out, child: panel}") +
+                           "  push: {type: force, frame: panel.left, value: [0, 0, 1]}\n";
+  withy::SceneParts parts;
+  expect_same(SceneValues::parse(text, "s.yaml"), parts, "at one corner");
+  expect_same(SceneValues::parse(replaced(text, "panel.left", "panel.right"), "s.yaml"), parts, "at the other");
+  expect_same(SceneValues::parse(text, "s.yaml"), parts, "at the first again");
+  EXPECT_EQ(problems, 0);
+}
+
 TEST_F(SceneParts, WhatDoesNotChangeIsOneObject) {
   withy::SceneParts parts;
   const SceneValues base = SceneValues::parse(good_scene, "s.yaml");
