@@ -19,7 +19,7 @@ struct HingeMotion {
   Vector6 bias = Vector6::Zero();                       ///< Ḣ ẋ
 };
 
-/// A motion the sweeps know and inline. A hinge that has one must move exactly so; the conformance suite compares.
+/// A motion the sweeps know and inline. A hinge that has one must move exactly so; find_fault (validate.hpp) compares.
 struct HingeKernel {
   enum class Kind {
     weld,       ///< no motion
