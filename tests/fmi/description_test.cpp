@@ -163,13 +163,14 @@ hinges:
   turn: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
   wrist: {type: prismatic, axis: [1, 0, 0], parent: a, child: b}
   driven: {type: prismatic, axis: [1, 0, 0], parent: b, child: c}
-motions: {swing: {type: sine, hinge: driven, amplitude: 0.1, frequency: 1, phase: 0.2}}
+motions: {swing: {type: sine, hinge: driven, amplitude: 0.1, period: 1, phase: 0.2}}
 loads:
   push: {type: input, hinge: wrist}
   brake: {type: hinge-spring, hinge: wrist, stiffness: 20, damping: 2, free_position: 0.1, preload: 1}
   stop: {type: hinge-limit, hinge: wrist, lower: -1, stiffness: 100}
   torsion: {type: hinge-spring, hinge: turn, stiffness: 20}
-  servo: {type: pd-controller, law: constant, hinges: {turn: {to: 0.1, stiffness: 1}, wrist: {to: 0.1, stiffness: 1}}}
+  servo: {type: pd-controller, law: constant, hinges: {turn: {to: 0.1, stiffness: 1, damping: 0},
+    wrist: {to: 0.1, stiffness: 1, damping: 0}}}
   hold: {type: pid, hinge: wrist, proportional: 3}
   far: {type: pid, of: wrist, to: push, proportional: 3, integral: 1}
   fast: {type: pid, of: turn.rate, hinge: turn, proportional: 3, limit: 2}
