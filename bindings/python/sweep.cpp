@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <utility>
+
 #include "withy/bindings/python/bindings.hpp"
 #include "withy/bindings/python/followed.hpp"
 #include "withy/campaign/cases.hpp"
@@ -11,12 +13,20 @@
 namespace withy::python {
 namespace {
 
+campaign::Plan plan_of(const std::string& file, Registry& registry, std::vector<std::string> plugin_folders) {
+  campaign::Plan plan = campaign::read_plan(file, registry);
+  plan.plugin_folders = std::move(plugin_folders);
+  return plan;
+}
+
 /// A plan with its store, read and opened once in a process, which then runs any of its shards.
 class OpenSweep {
  public:
-  OpenSweep(host::Library library, const std::string& plan, const std::string& store, bool anew)
+  /// \param plugin_folders those of the library, for commands that repeat a case
+  OpenSweep(host::Library library, const std::string& plan, const std::string& store, bool anew,
+            std::vector<std::string> plugin_folders)
       : library_(std::move(library)),
-        plan_(campaign::read_plan(plan, library_.registry())),
+        plan_(plan_of(plan, library_.registry(), std::move(plugin_folders))),
         store_(store, plan_, anew) {}
 
   [[nodiscard]] std::string fingerprint() const { return plan_.fingerprint; }
@@ -52,7 +62,7 @@ py::tuple collect(const std::string& store) {
 
 void bind_sweep(py::module_& m) {
   py::class_<OpenSweep>(m, "Sweep")
-      .def(py::init<host::Library, const std::string&, const std::string&, bool>())
+      .def(py::init<host::Library, const std::string&, const std::string&, bool, std::vector<std::string>>())
       .def_property_readonly("fingerprint", &OpenSweep::fingerprint)
       .def_property_readonly("size", &OpenSweep::size)
       .def("run", &OpenSweep::run);

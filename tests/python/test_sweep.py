@@ -139,6 +139,15 @@ class FirstOnly(concurrent.futures.Executor):
         return done
 
 
+def test_the_commands_of_failures_name_the_folders_of_plugins(plan):
+    mine = plan.parent / "my plugins"
+    mine.mkdir()
+    (plan.parent / "fails.yaml").write_text(PLAN.replace("grid: [1, 2]", "normal: {mean: 1, deviation: 1}"))
+    store = plan.parent / "store"
+    assert withy.sweep(plan.parent / "fails.yaml", out=store, plugins=[mine]).failed > 1
+    assert f"fails.yaml --plugins '{mine}' " in (store / "failed.csv").read_text().splitlines()[-1]
+
+
 def test_bad_plans_and_foreign_stores_are_refused_and_a_plan_may_stop_at_a_failure(plan):
     store = plan.parent / "store"
     with pytest.raises(withy.SceneError, match="unknown key \"mas\"; did you mean 'mass'"):

@@ -30,7 +30,7 @@ def _opened(key: Key, fingerprint: str) -> _withy.Sweep:
     opened = _open.get(key)  # threads of several sweeps may be here at once
     if opened is None or opened.fingerprint != fingerprint:
         plan, store, plugins = key
-        opened = _withy.Sweep(library(plugins), plan, store, False)
+        opened = _withy.Sweep(library(plugins), plan, store, False, list(plugins))
         if opened.fingerprint != fingerprint:
             raise StoreError(f"{plan}: this process reads another plan, scene or plugins than the one that began the sweep")
         _open.clear()
@@ -118,7 +118,7 @@ def sweep(plan: Path, executor: concurrent.futures.Executor | None = None, *, ou
     if parts is not None and parts < 1:
         raise ValueError(f"parts: got {parts}; need at least 1")
     key = (os.path.abspath(os.fspath(plan)), os.path.abspath(os.fspath(out)), tuple(os.path.abspath(os.fspath(p)) for p in as_list(plugins)))
-    own = _withy.Sweep(library(key[2]), key[0], key[1], force)
+    own = _withy.Sweep(library(key[2]), key[0], key[1], force, list(key[2]))
     stopped: str | None = None
     if executor is None:
         *_, stopped = own.run(1, 1, jobs, progress)
