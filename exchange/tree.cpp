@@ -4,6 +4,7 @@
 
 #include <cctype>
 #include <set>
+#include <type_traits>
 
 #include "withy/scene/names.hpp"
 
@@ -24,7 +25,9 @@ template <class Part>
 void name_parts(std::vector<Part>& parts, const char* what, Tree& tree, Diagnostics& diagnostics) {
   std::set<std::string> taken;
   for (Part& part : parts) {
-    const std::string made = scene_name(part.name);
+    std::string made = scene_name(part.name);
+    if constexpr (std::is_same_v<Part, Joint>)
+      if (is_column_of_all(made)) made.insert(0, "_");
     if (made != part.name)
       tree.remarks.push_back(fmt::format("{} {} is called {} here", what, in_quotes(part.name), made));
     part.name = made;

@@ -138,9 +138,9 @@ void enroll_bang_bang_slew(Enrollment& enrollment) {
       {.id = "bang-bang-slew",
        .summary = "Open-loop efforts of least time, at their limits, that would carry the tree of rigid bodies",
        .parameters = {named("hinges",
-                            {number("from", "rad", "coordinate at the start, rad or m").otherwise(0.0),
-                             number("to", "rad", "coordinate at the end, rad or m").otherwise(0.0),
-                             number("limit", "N m", "greatest effort, N m or N").above(0)},
+                            {number("from", "rad|m", "coordinate at the start, rad or m").otherwise(0.0),
+                             number("to", "rad|m", "coordinate at the end, rad or m").otherwise(0.0),
+                             number("limit", "N m|N", "greatest effort, N m or N").above(0)},
                             "one or two hinges to move, of one coordinate each; the others count as held at their "
                             "reference")
                           .naming(ParameterSpec::Refers::hinge)},

@@ -24,11 +24,11 @@ struct FollowedHinge {
 inline std::vector<ParameterSpec> trajectory_parameters(std::vector<std::string> laws, std::vector<ParameterSpec> own,
                                                         const std::string& which_hinges) {
   std::vector<ParameterSpec> hinge{
-      number("from", "rad", "coordinate at the start, 0 where left out (quintic, bang-bang)").optional(),
-      number("to", "rad", "coordinate at the end, 0 where left out (quintic, bang-bang, constant)").optional(),
-      table("table", {"s", "rad"}, "time and coordinate, at rest in the first and last row (table)").optional(),
-      number("center", "rad", "coordinate about which it swings, 0 where left out (sine)").optional(),
-      number("amplitude", "rad", "greatest distance from the centre (sine)").optional(),
+      number("from", "rad|m", "coordinate at the start, 0 where left out (quintic, bang-bang)").optional(),
+      number("to", "rad|m", "coordinate at the end, 0 where left out (quintic, bang-bang, constant)").optional(),
+      table("table", {"s", "rad|m"}, "time and coordinate, at rest in the first and last row (table)").optional(),
+      number("center", "rad|m", "coordinate about which it swings, 0 where left out (sine)").optional(),
+      number("amplitude", "rad|m", "greatest distance from the centre (sine)").optional(),
       number("phase", "rad", "phase at time 0, 0 where left out (sine)").optional(),
       text("motion", "motion plugin with its options (motion)").naming(ParameterSpec::Refers::motion).optional()};
   hinge.insert(hinge.end(), own.begin(), own.end());

@@ -61,7 +61,7 @@ void enroll_hinge_effort(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "hinge-effort",
        .summary = "Effort on one rate of a hinge as a function of time; a force in N where the rate is a velocity",
-       .parameters = rate_parameters(time_law_parameters<double>("effort", "N m")),
+       .parameters = rate_parameters(time_law_parameters<double>("effort", "N m|N")),
        .make = &make_hinge_effort});
 }
 

@@ -58,8 +58,8 @@ void enroll_hinge_friction(Enrollment& enrollment) {
       {.id = "hinge-friction",
        .summary = "Dry friction on a rate of a hinge, smooth through zero",
        .parameters = rate_parameters(
-           {number("effort", "N m", "friction of a fast motion; a force in N where the rate is a velocity").least(0),
-            number("rate_scale", "rad/s", "rate at which 76 % of it act: below, the hinge creeps").above(0)}),
+           {number("effort", "N m|N", "friction of a fast motion; a force in N where the rate is a velocity").least(0),
+            number("rate_scale", "rad/s|m/s", "rate at which 76 % of it act: below, the hinge creeps").above(0)}),
        .make = &make_hinge_friction});
 }
 

@@ -115,13 +115,13 @@ void enroll_hinge_limit(Enrollment& enrollment) {
       {.id = "hinge-limit",
        .summary = "Soft stops at the ends of a coordinate's range; per metre where the coordinate is a length",
        .parameters = rate_parameters(
-           {number("lower", "rad", "coordinate of the lower stop").optional(),
-            number("upper", "rad", "coordinate of the upper stop").optional(),
-            number("stiffness", "N m/rad", "of a stop that is entered beyond its onset").above(0),
-            number("dissipation", "s/rad", "a slow impact at rate v comes back with (1 − 2/3 dissipation v) v")
+           {number("lower", "rad|m", "coordinate of the lower stop").optional(),
+            number("upper", "rad|m", "coordinate of the upper stop").optional(),
+            number("stiffness", "N m/rad|N/m", "of a stop that is entered beyond its onset").above(0),
+            number("dissipation", "s/rad|s/m", "a slow impact at rate v comes back with (1 − 2/3 dissipation v) v")
                 .least(0)
                 .otherwise(0.0),
-            number("onset", "rad", "depth over which the stiffness grows from zero").above(0).otherwise(0.01)}),
+            number("onset", "rad|m", "depth over which the stiffness grows from zero").above(0).otherwise(0.01)}),
        .make = &make_hinge_limit});
 }
 

@@ -103,11 +103,11 @@ void enroll_hinge_relay(Enrollment& enrollment) {
   enrollment.add<Load>({.id = "hinge-relay",
                         .summary = "On-off controller with hysteresis on a rate of a hinge, as of attitude thrusters",
                         .parameters = rate_parameters(
-                            {number("effort", "N m", "effort while it is on").above(0),
-                             number("target", "rad", "coordinate to hold").otherwise(0.0),
+                            {number("effort", "N m|N", "effort while it is on").above(0),
+                             number("target", "rad|m", "coordinate to hold").otherwise(0.0),
                              number("rate_time", "s", "weight of the rate in the signal").least(0).otherwise(0.0),
-                             number("on", "rad", "signal at which it switches on").above(0),
-                             number("off", "rad", "signal at which it switches off; below 'on'").least(0)}),
+                             number("on", "rad|m", "signal at which it switches on").above(0),
+                             number("off", "rad|m", "signal at which it switches off; below 'on'").least(0)}),
                         .make = &make_hinge_relay});
 }
 

@@ -71,11 +71,11 @@ void enroll_hinge_spring(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "hinge-spring",
        .summary = "Linear spring and damper on a coordinate of a hinge; per metre where the coordinate is a length",
-       .parameters =
-           rate_parameters({number("stiffness", "N m/rad", "effort for one radian").least(0).otherwise(0.0),
-                            number("damping", "N m s/rad", "effort for one radian per second").least(0).otherwise(0.0),
-                            number("free_position", "rad", "coordinate at which the spring is slack").otherwise(0.0),
-                            number("preload", "N m", "constant effort, in the sense of the rate").otherwise(0.0)}),
+       .parameters = rate_parameters(
+           {number("stiffness", "N m/rad|N/m", "effort for one radian").least(0).otherwise(0.0),
+            number("damping", "N m s/rad|N s/m", "effort for one radian per second").least(0).otherwise(0.0),
+            number("free_position", "rad|m", "coordinate at which the spring is slack").otherwise(0.0),
+            number("preload", "N m|N", "constant effort, in the sense of the rate").otherwise(0.0)}),
        .make = &make_hinge_spring});
 }
 

@@ -121,7 +121,7 @@ std::unique_ptr<Motion> make_table(const Value& p, const MakeContext& context) {
       Spline(std::move(times), std::move(positions), value(p, "start_rate"), value(p, "end_rate")));
 }
 
-ParameterSpec from_parameter() { return number("from", "rad", "coordinate at time 0").otherwise(0.0); }
+ParameterSpec from_parameter() { return number("from", "rad|m", "coordinate at time 0").otherwise(0.0); }
 
 void enroll(Enrollment& enrollment) {
   enroll_motion_input(enrollment);
@@ -132,24 +132,24 @@ void enroll(Enrollment& enrollment) {
                           .make = &make_locked});
   enrollment.add<Motion>({.id = "constant-rate",
                           .summary = "Constant rate",
-                          .parameters = {number("rate", "rad/s", "rate"), from_parameter()},
+                          .parameters = {number("rate", "rad/s|m/s", "rate"), from_parameter()},
                           .make = &make_constant_rate});
   enrollment.add<Motion>(
       {.id = "spin-up",
        .summary = "Smoothly from rest to a rate, which then stays",
-       .parameters = {number("rate", "rad/s", "rate at the end"),
+       .parameters = {number("rate", "rad/s|m/s", "rate at the end"),
                       number("duration", "s", "time until it is reached").above(0), from_parameter()},
        .make = &make_spin_up});
   enrollment.add<Motion>({.id = "quintic",
                           .summary = "From rest to rest, along a polynomial of degree five",
-                          .parameters = {from_parameter(), number("to", "rad", "coordinate at the end"),
+                          .parameters = {from_parameter(), number("to", "rad|m", "coordinate at the end"),
                                          number("duration", "s", "time until the end").above(0)},
                           .make = &make_quintic});
   enrollment.add<Motion>({.id = "sine",
                           .summary = "Oscillation about a centre",
-                          .parameters = {number("amplitude", "rad", "greatest distance from the centre"),
+                          .parameters = {number("amplitude", "rad|m", "greatest distance from the centre"),
                                          number("period", "s", "period").above(0),
-                                         number("center", "rad", "coordinate about which it swings").otherwise(0.0),
+                                         number("center", "rad|m", "coordinate about which it swings").otherwise(0.0),
                                          number("phase", "rad", "phase at time 0").otherwise(0.0)},
                           .make = &make_sine});
   enrollment.add<Motion>(
@@ -160,9 +160,9 @@ void enroll(Enrollment& enrollment) {
   enrollment.add<Motion>(
       {.id = "table",
        .summary = "Cubic spline through given points, at rest in the first and the last or at rates",
-       .parameters = {table("table", {"s", "rad"}, "time and coordinate"),
-                      number("start_rate", "rad/s", "rate in the first row and before").otherwise(0.0),
-                      number("end_rate", "rad/s", "rate in the last row and after").otherwise(0.0)},
+       .parameters = {table("table", {"s", "rad|m"}, "time and coordinate"),
+                      number("start_rate", "rad/s|m/s", "rate in the first row and before").otherwise(0.0),
+                      number("end_rate", "rad/s|m/s", "rate in the last row and after").otherwise(0.0)},
        .make = &make_table});
 }
 

@@ -140,9 +140,9 @@ std::unique_ptr<Load> make_pd_controller(const Value& p, const MakeContext& cont
 void enroll_pd_controller(Enrollment& enrollment) {
   std::vector<ParameterSpec> parameters =
       trajectory_parameters({"quintic", "bang-bang", "table", "sine", "constant"},
-                            {component_parameter(), number("stiffness", "N m/rad", "proportional gain").least(0),
-                             number("damping", "N m s/rad", "derivative gain").least(0),
-                             number("limit", "N m", "the effort never exceeds this").above(0).optional()},
+                            {component_parameter(), number("stiffness", "N m/rad|N/m", "proportional gain").least(0),
+                             number("damping", "N m s/rad|N s/m", "derivative gain").least(0),
+                             number("limit", "N m|N", "the effort never exceeds this").above(0).optional()},
                             "hinges to control");
   parameters.push_back(sample_parameter());
   enrollment.add<Load>({.id = "pd-controller",

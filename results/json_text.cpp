@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "withy/scene/units.hpp"
+
 namespace withy {
 namespace {
 
@@ -49,7 +51,8 @@ std::string plain_text(const Json& value) {
 
 Json parameter_json(const ParameterSpec& p) {
   Json j{{"key", p.key}, {"kind", kind_text(p.kind)}};
-  if (!p.unit.empty()) j["unit"] = p.unit;
+  if (!p.unit.empty() && p.unit != any_unit) j["unit"] = unit_at_hinge(p.unit, false);
+  if (unit_at_hinge(p.unit, true) != unit_at_hinge(p.unit, false)) j["unit_sliding"] = unit_at_hinge(p.unit, true);
   j["meaning"] = p.meaning;
   j["required"] = p.required;
   if (p.fallback) j["default"] = value_json(*p.fallback);
@@ -57,7 +60,7 @@ Json parameter_json(const ParameterSpec& p) {
   if (p.maximum) j["most"] = *p.maximum;
   if (!p.choices.empty()) j["choices"] = p.choices;
   if (p.count > 0) j["count"] = p.count;
-  if (!p.columns.empty()) j["columns"] = p.columns;
+  for (const std::string& column : p.columns) j["columns"].push_back(unit_at_hinge(column, false));
   for (const ParameterSpec& member : p.members) j["members"].push_back(parameter_json(member));
   return j;
 }

@@ -51,7 +51,7 @@ Json plugin_json(const PluginEntry& plugin) {
 void add_options(std::string& out, const std::vector<Json>& options, const std::string& indent) {
   for (const Json& o : options) {
     std::string notes;
-    for (const char* key : {"unit", "default", "above", "least", "most", "choices", "count", "columns"})
+    for (const char* key : {"unit", "unit_sliding", "default", "above", "least", "most", "choices", "count", "columns"})
       if (o.contains(key) && o[key] != "1") notes += fmt::format(", {} {}", key, plain_text(o[key]));
     out += fmt::format("{}{} ({}{}{})\n{}    {}\n", indent, o["key"].get<std::string>(), o["kind"].get<std::string>(),
                        o["required"].get<bool>() ? ", required" : "", notes, indent, o["meaning"].get<std::string>());

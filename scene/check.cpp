@@ -29,7 +29,36 @@ bool are_set_elements(const Value& value, const ParameterSpec& spec) {
          });
 }
 
+QuantityReading quantity(const std::string& text, const std::string& unit) {
+  if (unit == any_unit) {
+    AnyQuantity any = read_any_quantity(text);
+    return {any.value, std::move(any.problem)};
+  }
+  QuantityReading turning = read_quantity(text, unit_at_hinge(unit, false));
+  return turning.value ? turning : read_quantity(text, unit_at_hinge(unit, true));
+}
+
+bool depends_on_hinge(const ParameterSpec& spec) {
+  const auto depends = [](const std::string& unit) { return unit.find('|') != std::string::npos; };
+  return depends(spec.unit) || std::any_of(spec.columns.begin(), spec.columns.end(), depends);
+}
+
+/// The specification with the units of a hinge that slides or turns.
+ParameterSpec at_hinge(ParameterSpec spec, bool slides) {
+  spec.unit = unit_at_hinge(spec.unit, slides);
+  for (std::string& unit : spec.columns) unit = unit_at_hinge(unit, slides);
+  return spec;
+}
+
 }  // namespace
+
+Checker::Moves Checker::moves(const std::string& hinge, const Value& map) const {
+  if (map.has("of")) return Moves::either;
+  if (names_ == nullptr) return Moves::turning;
+  const Value* component = map.find("component");
+  const double rate = component != nullptr && component->kind() == Value::Kind::number ? component->number() : 0;
+  return names_->sliding.has(fmt::format("{}.{}", hinge, rate)) ? Moves::sliding : Moves::turning;
+}
 
 bool Checker::in_range(double x, const ParameterSpec& spec) {
   if (!std::isfinite(x)) return false;
@@ -78,7 +107,7 @@ std::optional<Value> Checker::number(const Value& value, const ParameterSpec& sp
       diagnostics_.error(value.place(), fmt::format("got {}; need {}", t, expectation(spec)));
       return {};
     }
-    const QuantityReading reading = read_quantity(t, unit);
+    const QuantityReading reading = quantity(t, unit);
     if (!reading.value) {
       got(value, spec, reading.problem);
       return {};
@@ -216,8 +245,12 @@ bool Checker::read_members(const Value& value, std::initializer_list<const std::
     key_error(member.place().path, fmt::format("unknown key {}{}", in_quotes(key), suggestion(key, known())));
     good = false;
   }
+  const Value* hinge = value.find("hinge");
+  const Moves outside = moves_;  // a motion of a hinge may stand in a map about it
+  if (hinge != nullptr && hinge->kind() == Value::Kind::text) moves_ = moves(hinge->text(), value);
   for (const auto* members : lists)
     for (const ParameterSpec& spec : *members) good = read_member(value, spec, result) && good;
+  moves_ = outside;
   result.members().shrink_to_fit();  // it stays as long as the scene
   return good;
 }
@@ -239,6 +272,8 @@ Value Checker::default_with(const Value& elements, const Value& fallback) const 
 
 /// The member of a specification, or its default.
 bool Checker::read_member(const Value& value, const ParameterSpec& spec, Value& result) const {
+  if (moves_ != Moves::either && depends_on_hinge(spec))
+    return read_member(value, at_hinge(spec, moves_ == Moves::sliding), result);
   const auto path = [&] { return value.place().path + "/" + spec.key; };
   const Value* member = value.find(spec.key);
   Value fallback;

@@ -42,6 +42,7 @@ struct SceneNames {
   /// Where the scene names places that bodies have not: all frames and the stations of these bodies, for messages.
   NameList places;
   NameList loads;
+  NameList sliding;  ///< rates of hinges that are velocities, as "slide.0"; the others turn
   NameList signals;  ///< columns of hinges, outputs and loads, without what stands behind a dot of the latter two
   bool frames_complete = true;  ///< false where a body could not be made: any frame name is taken then
 };
@@ -51,6 +52,14 @@ class Checker {
  public:
   Checker(const Document& document, Registry& registry, Diagnostics& diagnostics)
       : document_(document), registry_(registry), diagnostics_(diagnostics) {}
+
+  /// The same checks with another place to report to, of what is not remembered.
+  Checker(const Checker& like, Diagnostics& diagnostics)
+      : document_(like.document_),
+        registry_(like.registry_),
+        diagnostics_(diagnostics),
+        names_(like.names_),
+        sources_(like.sources_) {}
 
   /// From now on references are compared with these names; before, any name is taken.
   void know(const SceneNames* names) { names_ = names; }
@@ -65,7 +74,8 @@ class Checker {
   /// The value in SI units with defaults filled in; nothing where it, or anything in it, is wrong.
   /// A text specification that has a unit takes a name or a number in that unit; one that refers to a mode family takes
   /// its name or a map of its `name` and options, one that refers to a motion the same with `type`, which becomes a
-  /// map.
+  /// map. A unit as "rad|m" is that of what the map's hinge does: the first where it turns, the second where it slides;
+  /// either where the map is about a signal, its `of`.
   std::optional<Value> check(const Value& value, const ParameterSpec& spec) const;
   /// The same for a map with these members.
   std::optional<Value> check_members(const Value& value, const std::vector<ParameterSpec>& members) const;
@@ -115,6 +125,9 @@ class Checker {
   Value default_with(const Value& elements, const Value& fallback) const;
   bool read_member(const Value& value, const ParameterSpec& spec, Value& result) const;
   std::optional<Value> number(const Value& value, const ParameterSpec& spec, const std::string& unit) const;
+  /// What the rate does that a map is about: of its hinge and component, or of a signal.
+  enum class Moves { turning, sliding, either };
+  [[nodiscard]] Moves moves(const std::string& hinge, const Value& map) const;
   std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> mode_family(const Value& value) const;
   std::optional<Value> formulation(const Value& value) const;
@@ -136,7 +149,8 @@ class Checker {
   const SceneNames* names_ = nullptr;
   mutable SceneSources* sources_ = nullptr;
   SceneParts* parts_ = nullptr;
-  mutable int suggested_ = 0;  ///< among many candidates
+  mutable int suggested_ = 0;             ///< among many candidates
+  mutable Moves moves_ = Moves::turning;  ///< what the map at hand is about
 };
 
 }  // namespace withy

@@ -125,7 +125,11 @@ std::optional<Value> Checker::named(const Value& value, const ParameterSpec& spe
     } else if (!refers(document_.key_place(path), name, spec.refers)) {
       good = false;
     }
-    if (auto checked = check_members(member, spec.members)) {
+    const bool of_hinge = spec.refers == ParameterSpec::Refers::hinge;
+    const Moves outside = std::exchange(moves_, of_hinge ? moves(name, member) : moves_);
+    auto checked = check_members(member, spec.members);
+    moves_ = outside;
+    if (checked) {
       result.members().emplace_back(name, std::move(*checked));
     } else {
       good = false;

@@ -9,11 +9,21 @@
 
 #include "withy/scene/names.hpp"
 #include "withy/scene/orientation.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy {
 namespace {
 
-std::string bracketed(const std::string& unit) { return unit.empty() || unit == "1" ? "" : " [" + unit + "]"; }
+/// "rad, or m of what slides".
+std::string unit_text(const std::string& unit) {
+  if (unit == any_unit) return "the unit of what is compared";
+  const std::string turning = unit_at_hinge(unit, false), sliding = unit_at_hinge(unit, true);
+  return turning == sliding ? turning : fmt::format("{}, or {} of what slides", turning, sliding);
+}
+
+std::string bracketed(const std::string& unit) {
+  return unit.empty() || unit == "1" ? "" : " [" + unit_text(unit) + "]";
+}
 
 std::string range(const ParameterSpec& spec) {
   std::string text;
@@ -24,7 +34,7 @@ std::string range(const ParameterSpec& spec) {
 
 std::string list_of_units(const std::vector<std::string>& units) {
   std::string text;
-  for (const std::string& u : units) text += (text.empty() ? "" : ", ") + u;
+  for (const std::string& u : units) text += (text.empty() ? "" : ", ") + unit_text(u);
   return text;
 }
 

@@ -32,13 +32,15 @@ std::optional<Watched> hinge_number(const Model& model, const Value& event, cons
     return {};
   }
   if (event.text_at("of") == "rate")
-    return Watched{static_cast<int>(model.layout().positions + slot.speed + component), 0};
+    return Watched{static_cast<int>(model.layout().positions + slot.speed + component), 0,
+                   rates[component].angular ? "rad/s" : "m/s"};
   if (!rates[component].coordinate) {
     checker.key_error(
         path, fmt::format("rate {} of hinge '{}' is the derivative of no coordinate; need of: rate", component, hinge));
     return {};
   }
-  return Watched{static_cast<int>(slot.position + *rates[component].coordinate), 0};
+  return Watched{static_cast<int>(slot.position + *rates[component].coordinate), 0,
+                 rates[component].angular ? "rad" : "m"};
 }
 
 std::optional<Watched> signal(const Model& model, const std::vector<SensorNode>& outputs, const Value& event,
@@ -48,7 +50,7 @@ std::optional<Watched> signal(const Model& model, const std::vector<SensorNode>&
   std::size_t column = 0;
   for (const SensorNode& node : outputs) {
     for (const Column& c : columns_of(node)) {
-      if (c.name == name) return Watched{-1, column};
+      if (c.name == name) return Watched{-1, column, c.unit};
       known.push_back(c.name);
       ++column;
     }
@@ -57,7 +59,7 @@ std::optional<Watched> signal(const Model& model, const std::vector<SensorNode>&
     const Slot& slot = model.layout().hinges[h];
     const auto find = [&](const std::vector<Column>& columns, std::size_t first) -> std::optional<Watched> {
       for (std::size_t i = 0; i < columns.size(); ++i) {
-        if (columns[i].name == name) return Watched{static_cast<int>(first + i), 0};
+        if (columns[i].name == name) return Watched{static_cast<int>(first + i), 0, columns[i].unit};
         known.push_back(columns[i].name);
       }
       return {};

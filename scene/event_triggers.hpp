@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "withy/core/model/model.hpp"
@@ -16,6 +17,7 @@ namespace withy {
 struct Watched {
   int element = -1;        ///< of State::y; −1: a sensor's number
   std::size_t column = 0;  ///< of the sensors' numbers, counted through
+  std::string unit = {};   ///< SI; empty: a number without one
 };
 
 /// What the event watches among the coordinates and rates of hinges and the scene's outputs; nothing after a reported

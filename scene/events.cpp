@@ -85,8 +85,16 @@ void SceneEvents::fasten(Value& hinges) const {
     if (std::find(held_.begin(), held_.end(), name) != held_.end()) hinge.set("type", Value(std::string("weld")));
 }
 
+/// Whether the value that an event's number passes has its unit.
+bool SceneEvents::measures(const std::string& event, const Watched& number) const {
+  const Value* value = document_.root.at("events").at(event).find("value");
+  if (value == nullptr || value->kind() != Value::Kind::text) return true;
+  return checker_.check(*value, withy::number("value", number.unit.empty() ? "1" : number.unit, "")).has_value();
+}
+
 /// What a load is given in the scene with what an event sets of it.
-Value SceneEvents::changed(const std::string& event, const std::string& load, const Value& given, bool& changes) const {
+Value SceneEvents::changed(const std::string& event, const std::string& load, const Value& given, bool& changes,
+                           Diagnostics& diagnostics) const {
   Value form = given;
   for (const Value& item : items_of(events_.at(event).at("do"), "set")) {
     const std::optional<Setting> setting = setting_of(item.text());
@@ -101,12 +109,45 @@ Value SceneEvents::changed(const std::string& event, const std::string& load, co
       key.erase(0, dot + 1);
     }
     Document read;
-    if (read_document(setting->text, {item.place().line, given.place().path + "/" + setting->key}, read,
-                      checker_.diagnostics()))
+    if (read_document(setting->text, {item.place().line, given.place().path + "/" + setting->key}, read, diagnostics))
       target->set(key, read.root);
     changes = true;
   }
   return form;
+}
+
+/// The load with what an event sets of it; null where it sets nothing, or after it is reported.
+std::shared_ptr<const Load> SceneEvents::form_of(const std::string& event, const std::string& load,
+                                                 const Value& given) const {
+  Diagnostics problems;
+  const Checker checker(checker_, problems);
+  bool changes = false;
+  const Value form = changed(event, load, given, changes, problems);
+  std::shared_ptr<const Load> object;
+  if (changes) {
+    Made<Load> made;
+    const auto checked = check_plugin_map(form, "type", grammar::load_members(), checker, made);
+    if (checked) object = make_object(*made.plugin, *checked, checker);
+  }
+  tell_of_settings(event, load, given, problems.errors());
+  return problems.ok() ? object : nullptr;
+}
+
+/// Reports what is wrong with a load as an event sets it, at the setting.
+void SceneEvents::tell_of_settings(const std::string& event, const std::string& load, const Value& given,
+                                   const std::vector<Diagnostic>& problems) const {
+  for (const Diagnostic& problem : problems) {
+    Place place;
+    for (const Value& item : items_of(events_.at(event).at("do"), "set")) {
+      const std::optional<Setting> setting = setting_of(item.text());
+      if (!setting || setting->load != load) continue;
+      std::string path = given.place().path + "/" + setting->key;
+      std::replace(path.begin(), path.end(), '.', '/');
+      if (place.path.empty() || problem.place.path.starts_with(path)) place = item.place();
+    }
+    place.path = where(event) + "/do/set";
+    checker_.diagnostics().error(place, fmt::format("of {}: {}", problem.place.path, problem.message));
+  }
 }
 
 std::shared_ptr<const Load> SceneEvents::with_forms(const std::string& name, std::shared_ptr<const Load> load) {
@@ -120,15 +161,9 @@ std::shared_ptr<const Load> SceneEvents::with_forms(const std::string& name, std
     for (const char* key : {"switch_on", "switch_off"})
       for (const Value& item : items_of(asked, key)) switched = switched || item.text() == name;
     if (given == nullptr) continue;
-    bool changes = false;
-    const Value form = changed(event, name, *given, changes);
-    if (!changes) continue;
-    switched = true;
-    Made<Load> made;
-    const auto checked = check_plugin_map(form, "type", grammar::load_members(), checker_, made);
-    if (!checked) continue;
-    auto object = make_object(*made.plugin, *checked, checker_);
+    auto object = form_of(event, name, *given);
     if (object == nullptr) continue;
+    switched = true;
     forms_[{event, name}] = static_cast<double>(forms.size());
     forms.push_back(std::move(object));
   }
@@ -258,7 +293,7 @@ void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, s
   std::vector<std::size_t> at_limits;  // events that watch them, one each
   for (const auto& [name, given] : events_.members()) {
     const std::optional<Watched> number = watched(model, outputs, given, checker_);
-    if (!number) continue;
+    if (!number || !measures(name, *number)) continue;
     if (!acts(name, given)) {
       const auto function = [index = static_cast<std::size_t>(number->element), value = given.number_at("value")](
                                 double, std::span<const double> y) { return y[index] - value; };

@@ -11,6 +11,7 @@
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/run_event.hpp"
 #include "withy/scene/check.hpp"
+#include "withy/scene/event_triggers.hpp"
 
 namespace withy {
 
@@ -32,6 +33,7 @@ class SceneEvents {
 
  private:
   [[nodiscard]] bool acts(const std::string& name, const Value& event) const;
+  [[nodiscard]] bool measures(const std::string& event, const Watched& number) const;
   void add_actions(const Model& model, const std::string& name, const Value& asked, ActingEvent& event) const;
   void add_hinge_actions(const Model& model, const Value& asked, const char* key, EventAction::Kind kind,
                          ActingEvent& event) const;
@@ -39,8 +41,12 @@ class SceneEvents {
   void add_releases(const Model& model, const Value& asked, ActingEvent& event) const;
   [[nodiscard]] std::vector<std::size_t> locked_at_start(const Model& model) const;
   void resolve_after(EventPlan& plan) const;
-  [[nodiscard]] Value changed(const std::string& event, const std::string& load, const Value& given,
-                              bool& changes) const;
+  [[nodiscard]] Value changed(const std::string& event, const std::string& load, const Value& given, bool& changes,
+                              Diagnostics& diagnostics) const;
+  [[nodiscard]] std::shared_ptr<const Load> form_of(const std::string& event, const std::string& load,
+                                                    const Value& given) const;
+  void tell_of_settings(const std::string& event, const std::string& load, const Value& given,
+                        const std::vector<Diagnostic>& problems) const;
 
   Value events_;
   const Document& document_;

@@ -1,5 +1,6 @@
 #include "withy/scene/grammar.hpp"
 
+#include "withy/scene/units.hpp"
 #include "withy/scene/visual.hpp"
 
 namespace withy::grammar {
@@ -12,31 +13,30 @@ Value numbers(std::initializer_list<double> xs) {
 }
 
 std::vector<ParameterSpec> event_members() {
-  return {
-      text("hinge", "hinge whose coordinate or rate passes a value").optional(),
-      integer("component", "which of the hinge's rates, counted from 0").least(0).otherwise(0.0),
-      text("of", "what is watched: the rate's coordinate or the rate itself")
-          .one_of({"position", "rate"})
-          .otherwise("position"),
-      text("signal", "number of an output, as imu.x, or column of a hinge that passes a value").optional(),
-      text("limit", "load whose limit is reached (up) or left (down): a saturated actuator, a hinge at its stop")
-          .optional(),
-      number("value", "rad", "value that it passes; of a rate in rad/s, of a signal in its own unit").otherwise(0.0),
-      text("direction", "from below, from above, or both").one_of({"up", "down", "both"}).otherwise("both"),
-      number("at", "s", "time at which it happens").optional(),
-      text("after", "event after which it happens").optional(),
-      number("delay", "s", "time from when it happens to when it acts").least(0).otherwise(0.0),
-      boolean("repeat", "whether it acts every time; else once").otherwise(Value(false)),
-      map("do",
-          {texts("lock", "hinges that are locked where they are, by impulses").optional(),
-           texts("unlock", "hinges that are free again").optional(),
-           texts("release", "bodies that are let go, with all that hangs on them; each is welded").optional(),
-           texts("switch_off", "loads that give no effort from then on").optional(),
-           texts("switch_on", "loads that act as the scene states them").optional(),
-           texts("set", "parameters of loads, as loads.motor.amplitude=5").optional()},
-          "what is done then")
-          .otherwise(Value::map({})),
-      boolean("stop", "whether the run ends there").otherwise(Value(false))};
+  return {text("hinge", "hinge whose coordinate or rate passes a value").optional(),
+          integer("component", "which of the hinge's rates, counted from 0").least(0).otherwise(0.0),
+          text("of", "what is watched: the rate's coordinate or the rate itself")
+              .one_of({"position", "rate"})
+              .otherwise("position"),
+          text("signal", "number of an output, as imu.x, or column of a hinge that passes a value").optional(),
+          text("limit", "load whose limit is reached (up) or left (down): a saturated actuator, a hinge at its stop")
+              .optional(),
+          number("value", std::string(any_unit), "value that it passes, in the unit of what is watched").otherwise(0.0),
+          text("direction", "from below, from above, or both").one_of({"up", "down", "both"}).otherwise("both"),
+          number("at", "s", "time at which it happens").optional(),
+          text("after", "event after which it happens").optional(),
+          number("delay", "s", "time from when it happens to when it acts").least(0).otherwise(0.0),
+          boolean("repeat", "whether it acts every time; else once").otherwise(Value(false)),
+          map("do",
+              {texts("lock", "hinges that are locked where they are, by impulses").optional(),
+               texts("unlock", "hinges that are free again").optional(),
+               texts("release", "bodies that are let go, with all that hangs on them; each is welded").optional(),
+               texts("switch_off", "loads that give no effort from then on").optional(),
+               texts("switch_on", "loads that act as the scene states them").optional(),
+               texts("set", "parameters of loads, as loads.motor.amplitude=5").optional()},
+              "what is done then")
+              .otherwise(Value::map({})),
+          boolean("stop", "whether the run ends there").otherwise(Value(false))};
 }
 
 }  // namespace

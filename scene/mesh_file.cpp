@@ -175,7 +175,9 @@ TriangleMesh stl(std::string_view bytes) {
 
 std::string bytes_of(const std::filesystem::path& file) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none)) refuse(fmt::format("there is no file '{}'", file.string()));
+  if (!std::filesystem::exists(file, none)) refuse(fmt::format("there is no file '{}'", file.string()));
+  if (!std::filesystem::is_regular_file(file, none))
+    refuse(fmt::format("'{}' is a folder, pipe or device; need a file", file.string()));
   if (std::filesystem::file_size(file, none) > most_mesh_bytes)
     refuse(fmt::format("need a file of at most {} MiB", most_mesh_bytes >> 20));
   std::ifstream stream(file, std::ios::binary);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 
@@ -69,11 +70,26 @@ std::string name_problem(std::string_view name) {
   return {};
 }
 
+bool is_column_of_all(std::string_view name) {
+  constexpr std::array<std::string_view, 6> names = {
+      "t", "work", "kinetic_energy", "potential_energy", "linear_momentum", "angular_momentum"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), most_listed); ++i) text += (i == 0 ? "" : ", ") + names[i];
   if (names.size() > most_listed) text += fmt::format(", … ({} in all)", names.size());
   return text;
+}
+
+bool has_controls(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : ' ');
+    if (c < 0x20 || c == 0x7F || (c == 0xC2 && next >= 0x80 && next < 0xA0)) return true;
+  }
+  return false;
 }
 
 std::string in_quotes(std::string_view text) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <list>
 #include <set>
 
@@ -105,7 +104,13 @@ class SceneBuilder {
 
   void read_plain_values() {
     const Value& source = scene_.source;
-    if (const Value* name = source.find("name")) scene_.name = name->text();
+    if (const Value* name = source.find("name")) {
+      scene_.name = name->text();
+      if (has_controls(scene_.name))
+        diagnostics_.error(name->place(), fmt::format("got {}, with control characters, which a terminal acts on; need "
+                                                      "text of one line",
+                                                      in_quotes(scene_.name)));
+    }
     if (const Value* gravity = source.find("gravity")) {
       const std::vector<double> g = gravity->numbers();
       gravity_ = {g[0], g[1], g[2]};
@@ -249,7 +254,7 @@ class SceneBuilder {
     for (const auto& [name, given] : outputs != nullptr ? outputs->members() : std::vector<Value::Member>{}) {
       const char* taken = tree.names.hinges.has(name)   ? "hinge"
                           : tree.names.bodies.has(name) ? "body"
-                          : is_default_column(name)     ? "column that every table has"
+                          : is_column_of_all(name)      ? "column that every table has"
                                                         : nullptr;
       if (taken == nullptr) continue;
       checker_.key_error("/outputs/" + name, fmt::format("got name {}, which is that of a {}; outputs need their own",
@@ -263,11 +268,6 @@ class SceneBuilder {
                           throw std::invalid_argument("the sensor cannot be bound and does not say why");
                         scene_.outputs.push_back({name, std::move(bound)});
                       });
-  }
-  static bool is_default_column(std::string_view name) {
-    constexpr std::array<std::string_view, 6> names = {
-        "t", "work", "kinetic_energy", "potential_energy", "linear_momentum", "angular_momentum"};
-    return std::find(names.begin(), names.end(), name) != names.end();
   }
 
   const Document& document_;

@@ -9,12 +9,25 @@ namespace withy {
 namespace {
 
 constexpr double most_outputs = 1e8;
+/// Of steps: a run of more does not come to its end, in hours.
+constexpr double most_in_a_run = 1e9;
+
+/// Reports a step of fixed size, or a greatest one, so short that no run comes to its end.
+void check_step(const Scene& scene, const Checker& checker) {
+  const double span = scene.end.value_or(scene.initial.time) - scene.initial.time;
+  for (const char* key : {"step", "max_step"}) {
+    const Value* step = scene.source.at("integrator").find(key);
+    if (step == nullptr || step->kind() != Value::Kind::number || !(span / step->number() > most_in_a_run)) continue;
+    checker.diagnostics().error(
+        step->place(), fmt::format("got {} s, which makes {:.3g} steps in a run; need at most {:g}", step->number(),
+                                   span / step->number(), most_in_a_run));
+  }
+}
 
 /// Reports loads whose samples come so often that the last ones of the run are no times of their own, or that no run
 /// comes to its end: a step ends at each.
 void check_samples(const Model& model, const Scene& scene, const Document& document, const Checker& checker) {
   constexpr double most_samples = 0x1p53;  // beyond, the number of a sample and the next are the same
-  constexpr double most_in_a_run = 1e9;
   const double latest = std::max(std::abs(scene.initial.time), std::abs(scene.end.value_or(0)));
   const double span = scene.end.value_or(scene.initial.time) - scene.initial.time;
   for (const LoadNode& node : model.loads()) {
@@ -46,6 +59,7 @@ void set_span(const Model& model, const Document& document, const Checker& check
   }
   if (const Value* end = scene.source.at("time").find("end")) scene.end = end->number();
   check_samples(model, scene, document, checker);
+  check_step(scene, checker);
   if (!scene.end) return;
   const double span = *scene.end - scene.initial.time;
   if (span < 0) {

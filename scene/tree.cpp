@@ -1,8 +1,12 @@
 #include "withy/scene/tree.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/scene/grammar.hpp"
+#include "withy/scene/names.hpp"
 #include "withy/scene/topology.hpp"
 #include "withy/scene/tree_bodies.hpp"
 
@@ -71,6 +75,11 @@ class TreeBuilder {
 
   void add_hinge(const std::string& name, const Value& given) {
     problems_.check_name(name, given);
+    if (is_column_of_all(name))
+      problems_.key_error(given.place().path,
+                          fmt::format("got name {}, which is that of a column that every table of results has; hinges "
+                                      "need their own",
+                                      in_quotes(name)));
     tree_.names.hinges.add(name);
     Link& link = links_.emplace_back();
     link.name = name;
@@ -114,7 +123,13 @@ class TreeBuilder {
     }
     node.offset = pose_of(value->at("offset"), problems_);
     node.hinge = hinges_.of(*made.plugin, *value, checker_);
-    if (node.hinge == nullptr) problems_.good = false;
+    if (node.hinge == nullptr) {
+      problems_.good = false;
+    } else {
+      const std::vector<HingeRate> rates = hinge_rates(*node.hinge);
+      for (std::size_t i = 0; i < rates.size(); ++i)
+        if (!rates[i].angular) tree_.names.sliding.add(fmt::format("{}.{}", name, i));
+    }
     hinge_nodes_.push_back(std::move(node));
     hinge_values_.emplace_back(name, std::move(made.value));
   }

@@ -228,6 +228,12 @@ std::size_t leading_number(std::string_view text, double& value) {
 
 }  // namespace
 
+std::string unit_at_hinge(std::string_view unit, bool slides) {
+  const std::size_t bar = unit.find('|');
+  if (bar == std::string_view::npos) return std::string(unit);
+  return std::string(slides ? unit.substr(bar + 1) : unit.substr(0, bar));
+}
+
 UnitReading read_unit(std::string_view text) { return UnitParser(text).read(); }
 
 bool looks_like_number(std::string_view text) {

@@ -49,6 +49,12 @@ struct AnyQuantity {
 };
 AnyQuantity read_any_quantity(std::string_view text);
 
+/// The unit of a parameter whose own is `unit`: of "rad|m" the first part where a hinge turns, the second where it
+/// slides; any other is for both.
+std::string unit_at_hinge(std::string_view unit, bool slides);
+/// Of a parameter whose unit depends on what it is compared with: a number with a unit of any kind.
+constexpr std::string_view any_unit = "any";
+
 /// True where the text begins as a number does, so that it is meant as a quantity and not as a name.
 bool looks_like_number(std::string_view text);
 

@@ -185,8 +185,8 @@ void enroll_actuator(Enrollment& enrollment) {
        .parameters =
            control_parameters({number("frequency", "rad/s", "undamped natural frequency").above(0),
                                number("damping_ratio", "1", "damping over critical damping").above(0).otherwise(0.7),
-                               number("rate_limit", "N m/s", "the effort never changes faster").above(0).optional(),
-                               number("limit", "N m", "the effort never exceeds this").above(0).optional()}),
+                               number("rate_limit", "N m/s|N/s", "the effort never changes faster").above(0).optional(),
+                               number("limit", "N m|N", "the effort never exceeds this").above(0).optional()}),
        .make = &make_actuator});
   std::vector<ParameterSpec> motor{
       number("resistance", "1", "of the armature [ohm]").above(0),

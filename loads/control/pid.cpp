@@ -234,21 +234,24 @@ std::unique_ptr<Load> make_pid(const Value& p, const MakeContext& context) {
 
 void enroll_pid(Enrollment& enrollment) {
   std::vector<ParameterSpec> own{
-      number("proportional", "N m/rad", "effort for one of error").least(0).or_table("1").otherwise(0.0),
-      number("integral", "N m/(rad s)", "rate of effort for one of error").least(0).or_table("1").otherwise(0.0),
-      number("derivative", "N m s/rad", "effort for one of error a second").least(0).or_table("1").otherwise(0.0),
+      number("proportional", "N m/rad|N/m", "effort for one of error").least(0).or_table("1").otherwise(0.0),
+      number("integral", "N m/(rad s)|N/(m s)", "rate of effort for one of error")
+          .least(0)
+          .or_table("1")
+          .otherwise(0.0),
+      number("derivative", "N m s/rad|N s/m", "effort for one of error a second").least(0).or_table("1").otherwise(0.0),
       text("schedule", "signal over which gains are tables").naming(ParameterSpec::Refers::signal).optional(),
       number("filter", "s", "time constant of the derivative's first-order filter; 0: the rate of the hinge")
           .least(0)
           .otherwise(0.0),
-      number("limit", "N m", "the effort never exceeds this").above(0).optional(),
+      number("limit", "N m|N", "the effort never exceeds this").above(0).optional(),
       text("anti_windup", "what the integral does at the limit, back-calculation where left out")
           .one_of({"back-calculation", "clamping", "none"})
           .optional(),
       number("tracking_time", "s", "of the back-calculation, in which the integral follows the limit")
           .above(0)
           .optional()};
-  for (ParameterSpec& spec : reference_parameters("rad")) own.push_back(std::move(spec));
+  for (ParameterSpec& spec : reference_parameters("rad|m")) own.push_back(std::move(spec));
   enrollment.add<Load>(
       {.id = "pid",
        .summary = "Controller: proportional, integral and derivative feedback, limited, with anti-windup",

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "withy/tests/cli/process.hpp"
@@ -179,6 +180,29 @@ TEST(Run, OfClosedLoopsAndOfActingEventsLeavesWhatTheyDid) {
 }
 
 /// Sensors look at accepted states: a run goes the same way with and without them, to the last digit.
+// In a table of two columns of one name neither could be told from the other.
+TEST(Run, NoHingeHasTheNameOfAColumnThatEveryTableHas) {
+  const Folder folder;
+  const auto scene = [](const std::string& hinge) {
+    return "format: withy/1\ntime: {end: 0.1, output: 0.1}\nbodies: {rod: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, "
+           "0, "
+           "0]}}\nhinges: {" +
+           hinge + ": {type: free, parent: world, child: rod}}\n";
+  };
+  folder.write("s.yaml", scene("float"));
+  ASSERT_EQ(withy(folder, {"run", "s.yaml", "--out", "out"}).status, 0);
+  std::set<std::string> common;
+  for (const std::string& column : cells(lines(folder.read("out/results.csv")).at(0)))
+    if (!column.starts_with("float")) common.insert(column.substr(0, column.find_first_of(".[")));
+  EXPECT_EQ(common.size(), 6U);
+  for (const std::string& name : common) {
+    folder.write("s.yaml", scene(name));
+    const Finished f = withy(folder, {"check", "s.yaml"});
+    EXPECT_EQ(f.status, 2) << name;
+    EXPECT_THAT(f.err, HasSubstr("s.yaml:4:10: /hinges/" + name));
+  }
+}
+
 TEST(Run, OutputsAreColumnsAndChangeNothingElse) {
   const Folder folder;
   const std::vector<std::string> first_second = {"--set", "time.end=1", "--set", "time.output=0.02", "--out"};

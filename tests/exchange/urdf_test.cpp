@@ -118,6 +118,17 @@ hinges:
   EXPECT_TRUE(urdf.remarks.empty());
 }
 
+TEST(Urdf, AJointWithTheNameOfAColumnOfAllResultsGetsAnother) {
+  const Scratch file(".urdf",
+                     "<robot name='r'><link name='base'/><link name='work'><inertial><mass value='1'/><inertia ixx='1' "
+                     "iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='work' type='continuous'>"
+                     "<parent link='base'/><child link='work'/><axis xyz='0 0 1'/></joint></robot>");
+  const ImportedScene made = imported({file.file(), {}, false, 0, 0});
+  EXPECT_THAT(made.remarks, testing::Contains("joint \"work\" is called _work here"));
+  host::Equations f(host::Scene::parse(plugins(), made.text));
+  EXPECT_EQ(f.states().at(0).name, "_work");
+}
+
 TEST(Urdf, WhatItCannotSayIsSaidWithTheName) {
   const auto written = [](const std::string& hinge) {
     return write_urdf(

@@ -55,6 +55,47 @@ const std::vector<Value::Member> stops = {{"lower", Value(-1.0)},
                                           {"dissipation", Value(0.4)},
                                           {"onset", Value(0.1)}};
 
+// What a load at a hinge measures is what the hinge does.
+TEST(HingeLoads, have_the_units_of_a_slide_at_a_slide) {
+  const auto problem = [](const std::string& type, const std::string& more) {
+    return test::problem_of(
+        "format: withy/1\ntime: {end: 1}\nbodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+        "hinges: {h: {type: " +
+        type + ", axis: [0, 0, 1], parent: world, child: a}}\n" + more);
+  };
+  const auto load = [](const std::string& text) { return "loads: {x: {hinge: h, " + text + "}}\n"; };
+  const auto motion = [](const std::string& text) { return "motions: {x: {hinge: h, " + text + "}}\n"; };
+  const std::vector<std::pair<std::string, std::string>> turning_and_sliding = {
+      {load("type: hinge-spring, stiffness: 5 N m/rad, damping: 1 N m s/rad, free_position: 30 deg, preload: 1 N m"),
+       load("type: hinge-spring, stiffness: 5 N/mm, damping: 1 N s/m, free_position: 30 mm, preload: 1 N")},
+      {load("type: hinge-effort, value: 1 N m"), load("type: hinge-effort, value: 1 kN")},
+      {load("type: hinge-effort, law: table, table: [[0, 1 N m], [1, 0]]"),
+       load("type: hinge-effort, law: table, table: [[0, 1 N], [1, 0]]")},
+      {load("type: hinge-limit, upper: 30 deg, stiffness: 10, onset: 1 deg"),
+       load("type: hinge-limit, upper: 30 mm, stiffness: 10, onset: 1 mm")},
+      {load("type: hinge-friction, effort: 1 N m, rate_scale: 1 deg/s"),
+       load("type: hinge-friction, effort: 1 N, rate_scale: 1 mm/s")},
+      {motion("type: sine, amplitude: 30 deg, period: 1, phase: 90 deg"),
+       motion("type: sine, amplitude: 30 mm, period: 1, phase: 90 deg")},
+      {motion("type: table, table: [[0, 0], [1, 30 deg]]"), motion("type: table, table: [[0, 0], [1, 30 mm]]")},
+      {"loads: {x: {type: pd-controller, law: constant, hinges: {h: {to: 30 deg, stiffness: 1, damping: 1, limit: 1 N "
+       "m}}}}\n",
+       "loads: {x: {type: pd-controller, law: constant, hinges: {h: {to: 30 mm, stiffness: 1, damping: 1, limit: 1 "
+       "N}}}}\n"},
+      {"loads: {x: {type: pd-controller, law: motion, hinges: {h: {motion: {type: quintic, to: 30 deg, duration: 1}, "
+       "stiffness: 1, damping: 1}}}}\n",
+       "loads: {x: {type: pd-controller, law: motion, hinges: {h: {motion: {type: quintic, to: 30 mm, duration: 1}, "
+       "stiffness: 1, damping: 1}}}}\n"},
+      {"events: {e: {hinge: h, value: 30 deg}}\n", "events: {e: {hinge: h, value: 30 mm}}\n"},
+      {"events: {e: {hinge: h, of: rate, value: 30 deg/s}}\n", "events: {e: {hinge: h, of: rate, value: 30 mm/s}}\n"}};
+  for (const auto& [turning, sliding] : turning_and_sliding) {
+    EXPECT_EQ(problem("revolute", turning), "") << turning;
+    EXPECT_EQ(problem("prismatic", sliding), "") << sliding;
+    EXPECT_THAT(problem("prismatic", turning), testing::HasSubstr("is a wrong unit here; need ")) << turning;
+    EXPECT_THAT(problem("revolute", sliding), testing::HasSubstr("is a wrong unit here; need ")) << sliding;
+  }
+}
+
 TEST(HingeLimit, pushes_back_from_beyond_either_stop_and_never_pulls) {
   const auto limit = passive("hinge-limit", stops);
   for (const double x : {-1.0, -0.3, 0.5}) EXPECT_EQ(effort(*limit, x, 3.0), 0) << x;

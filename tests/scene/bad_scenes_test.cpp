@@ -198,6 +198,10 @@ const BadScene bad_scenes[] = {
     {"name_world", "  hub:", "  world:", R"(5:3: /bodies/world: got name "world"; 'world' is the name of the ground)"},
     {"name_begins_with_digit",
      "  motor:", "  1motor:", R"(21:3: /loads/1motor: got name "1motor"; names begin with a letter or '_')"},
+    {"hinge_with_the_name_of_a_column", "  shoulder:", "  kinetic_energy:",
+     "18:3: /hinges/kinetic_energy: got name \"kinetic_energy\", which is that of a column that every table of results "
+     "has; "
+     "hinges need their own"},
     {"name_of_a_frame", "      out: ", "      o/ut: ",
      R"(10:7: /bodies/hub/frames/o/ut: got name "o/ut"; names are made of letters, digits, '_' and '-')"},
     {"frame_named_as_a_station", "    damping_ratio: 0.01", "    frames: {tip: {position: [1, 0, 0]}}",
