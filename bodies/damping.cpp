@@ -97,11 +97,19 @@ std::vector<std::string> BodyDamping::remarks(Eigen::Index modes) const {
   return found;
 }
 
+namespace {
+
+/// Beyond, a mode does not move in any time there is; with a stiff one its coefficients leave the range of numbers.
+constexpr double greatest_ratio = 1e6;
+
+}  // namespace
+
 std::vector<ParameterSpec> damping_parameters(bool with_default) {
   ParameterSpec ratio = number("damping_ratio", "1",
                                "fraction of critical damping of each mode that the body has with its frame held and "
                                "carrying nothing; modes of the mounted tree have other ratios")
-                            .least(0);
+                            .least(0)
+                            .most(greatest_ratio);
   std::vector<ParameterSpec> specs;
   specs.push_back(with_default ? std::move(ratio).otherwise(0.0) : std::move(ratio).optional());
   specs.push_back(
@@ -109,6 +117,7 @@ std::vector<ParameterSpec> damping_parameters(bool with_default) {
           {table("ratios", {"1", "1"},
                  "number of a mode of the body held so, from 1 in order of frequency, and its own ratio")
                .least(0)
+               .most(greatest_ratio)
                .optional(),
            number("stiffness_proportional", "s", "beta of a damping beta K, ratio beta omega/2 beside the others")
                .least(0)

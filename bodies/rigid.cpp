@@ -43,11 +43,13 @@ std::unique_ptr<Body> make_rigid(const Value& p, const MakeContext& context) {
   inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
   double excess = 0;
   if (!physical(inertia, excess)) {
-    context.diagnostics.error(p.at("inertia").place(),
-                              "no distribution of mass has this inertia about its centre of mass; need principal "
-                              "moments >= 0, none above the "
-                              "sum of the other two (triangle inequality; here the greatest exceeds the sum by " +
-                                  std::to_string(excess) + " kg m^2)");
+    context.diagnostics.error(
+        p.at("inertia").place(),
+        "no distribution of mass has this inertia about its centre of mass; need principal "
+        "moments >= 0, none above the "
+        "sum of the other two (triangle inequality; " +
+            (std::isfinite(excess) ? "here the greatest exceeds the sum by " + std::to_string(excess) + " kg m^2)"
+                                   : std::string("here they are beyond the range of numbers)")));
     return nullptr;
   }
   return std::make_unique<RigidBody>(p.number_at("mass"), Vector3(c[0], c[1], c[2]), inertia);

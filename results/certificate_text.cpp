@@ -186,14 +186,16 @@ std::string dropped_text(const study::Certificate& c) {
   for (const study::DroppedForces& d : c.dropped) {
     text += fmt::format("{}on {} ", text.empty() ? "" : "; ", d.group);
     // The moment says more than a spread, which is great there.
-    if (!d.moment && d.spread > worth_a_spread * d.share) {
+    if (!std::isfinite(d.share)) {
+      text += "more than can be told, for that is beyond the range of numbers";
+    } else if (!d.moment && d.spread > worth_a_spread * d.share) {
       text += fmt::format("{:.2g} ± {}", 100 * d.share, percent(d.spread));
     } else {
       text += percent(d.share);
     }
     std::string terms;
     for (std::size_t i = 0; i < std::min(named, d.terms.size()); ++i)
-      if (d.terms[i].share > worth_naming)
+      if (d.terms[i].share > worth_naming && std::isfinite(d.terms[i].share))
         terms +=
             fmt::format("{}{} {}", terms.empty() ? "" : ", ", in_words(d.terms[i].term), percent(d.terms[i].share));
     if (!terms.empty()) text += fmt::format(" ({})", terms);

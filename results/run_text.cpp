@@ -22,8 +22,10 @@ namespace {
 
 std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"); }
 
-/// In degrees to four places; what rounds to zero has no sign.
+/// In degrees to four places; what rounds to zero has no sign, and what has more digits than are known an exponent.
 std::string in_degrees(double angle) {
+  constexpr double long_number = 1e12;
+  if (!(std::abs(angle) < long_number)) return fmt::format("{:.6g}", angle * 180 / std::numbers::pi);
   const std::string text = fmt::format("{:.4f}", angle * 180 / std::numbers::pi);
   return text == "-0.0000" ? text.substr(1) : text;
 }

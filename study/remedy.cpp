@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -98,6 +99,12 @@ const char* const shorter_steps =
 
 }  // namespace
 
+const Value* least_step(const Scene& scene, double time) {
+  const Value* least = scene.source.at("integrator").find("min_step");
+  const bool ends = least != nullptr && least->number() > 16 * std::numeric_limits<double>::epsilon() * std::abs(time);
+  return ends ? least : nullptr;
+}
+
 std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   const Terms terms = prepared.scene.formulation->terms();
   const bool bends = has_modes(prepared.model());
@@ -121,6 +128,10 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   // Before any model: what grows in such steps tells nothing of it.
   if (summary.status == RunStatus::diverged)
     if (const std::optional<std::string> steps = unstable_steps(prepared, summary)) return *steps + shorter_steps;
+  if (summary.status == RunStatus::step_underflow)
+    if (const Value* least = least_step(prepared.scene, summary.reached))
+      return fmt::format(" What to do: let min_step be smaller: it is {:g} s, and time could be told apart farther.",
+                         least->number());
   if (bends && leaves_something_out(terms))
     return " What to do: run it with --formulation quadratic, which leaves out less; if that ends the same way it is "
            "the model and not the formulation.";

@@ -13,4 +13,8 @@ namespace withy::study {
 /// integrator; empty for all others.
 std::string remedy_text(const Prepared& prepared, const RunSummary& summary);
 
+/// The `min_step` that the scene gives its integrator, where that and not the resolution of time is the least step at a
+/// time [s]; null where it is not.
+const Value* least_step(const Scene& scene, double time);
+
 }  // namespace withy::study

@@ -214,15 +214,31 @@ bool wanted(Estimate estimate, const Beyond& beyond) {
 
 }  // namespace
 
-void check_accuracy(const Prepared& prepared) {
+void check_start(const Prepared& prepared) {
   const Scene& scene = prepared.scene;
-  const Value* rtol = scene.source.at("integrator").find("rtol");
-  const double tolerance = rtol != nullptr ? rtol->number() : 1.0;
-  const std::string why = unattainable(prepared.model(), *prepared.equations, scene.initial, tolerance);
+  const auto refuse = [&](const Place& place, std::string why) {
+    throw SceneError(scene.file, {{place, std::move(why)}}, prepared.values.origins());
+  };
+  const Value& integrator = scene.source.at("integrator");
+  const Place chosen{integrator.place().line, integrator.place().column, "/integrator"};
+  try {
+    static_cast<void>(scene.integrator->start(*prepared.equations, scene.initial));
+  } catch (const std::invalid_argument& e) {
+    refuse(chosen, e.what());
+  }
+  if (const auto rate = unsolvable_rate(prepared.model(), *prepared.equations, scene.initial)) {
+    const std::string& name = prepared.model().hinges()[rate->hinge].name;
+    const Value* hinge = scene.source.at("hinges").find(name);  // null: of a segment
+    refuse(hinge != nullptr ? hinge->place() : scene.source.at("hinges").place(), rate->why);
+  }
+  const Value* rtol = integrator.find("rtol");
+  const std::string why =
+      unattainable(prepared.model(), *prepared.equations, scene.initial, rtol != nullptr ? rtol->number() : 1.0);
   if (why.empty()) return;
-  throw InputError(rtol != nullptr ? scene.file + ": /integrator/rtol: got " + brief(tolerance) +
-                                         ", an accuracy that cannot be had: " + why
-                                   : scene.file + ": " + why);
+  if (rtol == nullptr) refuse(chosen, why);
+  const bool given = prepared.values.find("integrator.rtol") != nullptr;
+  refuse(rtol->place(), fmt::format("{} {}, an accuracy that cannot be had: {}", given ? "got" : "the default is",
+                                    brief(rtol->number()), why));
 }
 
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings) {

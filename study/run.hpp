@@ -40,9 +40,9 @@ struct CertifiedRun {
   Certificate certificate;
 };
 
-/// Refuses a tolerance below what the mass matrix leaves to be had, and a start at which it is singular.
-/// \throws InputError
-void check_accuracy(const Prepared& prepared);
+/// Refuses what no run can begin with: a tolerance below what the mass matrix leaves to be had, a start at which that
+/// is singular, an integrator that cannot treat these equations. \throws SceneError with its place
+void check_start(const Prepared& prepared);
 
 /// Simulates from the scene's initial state to its end, measures what is left out on the way, and estimates its effect
 /// afterwards. Of `auto` the error is estimated and its formulations are chosen before; a run that comes to the end and

@@ -8,12 +8,13 @@
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/remedy.hpp"
 #include "withy/study/search_time.hpp"
 
 namespace withy::study {
 namespace {
 
-std::string reason_of(const StepResult& result, const Prepared& model) {
+std::string reason_of(const StepResult& result, const Prepared& model, double time) {
   const auto& bodies = model.model().bodies();
   const std::string body =
       result.body >= 0 ? " at body '" + bodies[static_cast<std::size_t>(result.body)].name + "'" : "";
@@ -23,7 +24,8 @@ std::string reason_of(const StepResult& result, const Prepared& model) {
     case StepResult::Outcome::singular:
       return "the mass matrix cannot be solved" + body;
     default:
-      return "the accuracy asked for needs steps below the resolution of time";
+      return "the accuracy asked for needs steps below " +
+             std::string(least_step(model.scene, time) != nullptr ? "min_step" : "the resolution of time");
   }
 }
 
@@ -69,7 +71,7 @@ class Watch final : public SteppingObserver {
     walk.time = loop.state().time;
     if (ended.cause == SteppingEnd::Cause::reached) static_cast<void>(seen(observer_.output(loop.state())));
     if (ended.cause == SteppingEnd::Cause::failed)
-      stop(ended.reason.empty() ? reason_of(ended.step, model_) : ended.reason);
+      stop(ended.reason.empty() ? reason_of(ended.step, model_, loop.state().time) : ended.reason);
     if (ended.cause == SteppingEnd::Cause::crowded)
       stop("loads switch or events act again and again without time between the instants");
   }

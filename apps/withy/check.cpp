@@ -3,6 +3,7 @@
 #include "withy/apps/withy/engine.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/remarks.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy::app {
 namespace {
@@ -13,6 +14,7 @@ struct CheckArguments : SceneArguments {
 
 ExitStatus check(const CheckArguments& arguments) {
   const Engine engine(arguments);
+  study::check_start(engine.prepared());
   const std::vector<study::Remark> remarks = study::implausible(engine.prepared(), engine.registry());
   print(arguments.json ? json_text(remarks_json(engine.scene(), remarks)) : remarks_text(engine.scene(), remarks));
   return arguments.strict && !remarks.empty() ? ExitStatus::bad_input : ExitStatus::done;

@@ -44,7 +44,7 @@ RecordedRun recorded(const Engine& engine, const RunArguments& arguments) {
 ExitStatus run(const RunArguments& given) {
   RunArguments arguments = given;
   const Engine engine(arguments, arguments.threads);
-  study::check_accuracy(engine.prepared());
+  study::check_start(engine.prepared());
   check_columns(engine.prepared(), arguments.outputs);
   if (!arguments.hdf5) arguments.hdf5 = hdf5_missing().empty();
   if (*arguments.hdf5 && !hdf5_missing().empty()) {

@@ -24,9 +24,10 @@ std::unique_ptr<Body> make_modal(const Value& p, const MakeContext& context) {
   };
   const std::filesystem::path file = std::filesystem::path(context.directory) / named.text();
   std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none)) {
-    return fault(fmt::format("there is no file '{}'; need a file of Standard Input Data", file.string()));
-  }
+  constexpr const char* need = "need a file of Standard Input Data";
+  if (!std::filesystem::exists(file, none)) return fault(fmt::format("there is no file '{}'; {}", file.string(), need));
+  if (!std::filesystem::is_regular_file(file, none))
+    return fault(fmt::format("'{}' is a folder, pipe or device; {}", file.string(), need));
   if (std::filesystem::file_size(file, none) > most_bytes) return fault("need a file of at most 256 MiB");
   std::ifstream stream(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)), {});

@@ -73,9 +73,16 @@ double carried_inertia(const Model& model, const Observation& seen, int hinge) {
   return inertia;
 }
 
-/// The hinge rate that turns nothing but rounding; −1 where there is none. κ of the scaled M does not see it.
-int rate_without_inertia(const Model& model, const EquationsOfMotion& equations, const State& state,
-                         const DenseSystem& system) {
+/// Whether its own inertia is what rounding leaves of what its hinge carries, or not a number that can be told.
+enum class RateFault { none, no_mass, no_number };
+struct FaultyRate {
+  RateFault fault = RateFault::none;
+  std::size_t hinge = 0, speed = 0;
+};
+
+/// The first hinge rate that turns nothing but rounding. κ of the scaled M does not see it.
+FaultyRate faulty_rate(const Model& model, const EquationsOfMotion& equations, const State& state,
+                       const DenseSystem& system) {
   const auto seen = equations.make_observation();
   seen->observe(state.y);
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
@@ -86,12 +93,12 @@ int rate_without_inertia(const Model& model, const EquationsOfMotion& equations,
     for (const HingeRate& rate : hinge_rates(*model.hinges()[h].hinge)) {
       const double own = system.mass[i * system.size + i];
       if (rate.angular && carried < 0) carried = carried_inertia(model, *seen, static_cast<int>(h));
-      if (rate.angular && !(own > 4 * epsilon * carried)) return static_cast<int>(i);
-      if (!rate.angular && !(own > 0)) return static_cast<int>(i);
+      if (!std::isfinite(own) || !std::isfinite(carried)) return {RateFault::no_number, h, i};
+      if (own <= (rate.angular ? 4 * epsilon * carried : 0)) return {RateFault::no_mass, h, i};
       ++i;
     }
   }
-  return -1;
+  return {};
 }
 
 std::string body_of_speed(const Model& model, std::size_t speed) {
@@ -206,24 +213,36 @@ std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& syste
   return best;
 }
 
+std::optional<UnsolvableRate> unsolvable_rate(const Model& model, const EquationsOfMotion& equations,
+                                              const State& state) {
+  const Layout& layout = model.layout();
+  if (layout.speeds == 0 || layout.speeds > largest_examined) return {};
+  const FaultyRate rate = faulty_rate(model, equations, state, equations.system(state.time, state.y));
+  const std::string& name = layout.speed_names[rate.speed];
+  if (rate.fault == RateFault::no_number)
+    return UnsolvableRate{
+        rate.hinge,
+        "the inertia that " + name + " moves is beyond the range of numbers: masses or lengths on it are too great"};
+  if (rate.fault == RateFault::no_mass)
+    return UnsolvableRate{rate.hinge, "the mass matrix is singular: " + name +
+                                          " moves no mass beyond rounding; give body '" +
+                                          body_of_speed(model, rate.speed) +
+                                          "', or what hangs on it, mass or inertia there, or lock the hinge"};
+  return {};
+}
+
 std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance) {
   const Layout& layout = model.layout();
   if (layout.speeds == 0) return {};
-  const bool small = layout.speeds <= largest_examined;
-  DenseSystem system;
-  if (small) {
-    system = equations.system(state.time, state.y);
-    if (const int rate = rate_without_inertia(model, equations, state, system); rate >= 0) {
-      const auto i = static_cast<std::size_t>(rate);
-      return "the mass matrix is singular: " + layout.speed_names[i] + " moves no mass beyond rounding; give body '" +
-             body_of_speed(model, i) + "', or what hangs on it, mass or inertia there, or lock the hinge";
-    }
-  }
+  if (std::optional<UnsolvableRate> rate = unsolvable_rate(model, equations, state)) return std::move(rate->why);
   const RoundingError error = rounding_error(model, equations, state);
   if (tolerance >= error.relative) return {};
   std::string text = "rounding leaves accelerations an error of " + brief(error.relative) + ", most in " +
                      layout.speed_names[error.speed];
-  if (!small) return text;
+  if (!std::isfinite(error.relative))
+    return "the accelerations of " + layout.speed_names[error.speed] + " are beyond the range of numbers";
+  if (layout.speeds > largest_examined) return text;
+  const DenseSystem system = equations.system(state.time, state.y);
   const AttainableAccuracy a = attainable_accuracy(system);
   text += "; the condition of the mass matrix is " + brief(a.condition) +
           " with each coordinate in the unit of its own inertia, and the direction that moves least mass, " +

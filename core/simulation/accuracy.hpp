@@ -72,6 +72,15 @@ struct Slowing {
 /// The highest mode of a body without which the fastest vibration is slowest; nothing where there are no modes.
 std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system);
 
+/// A rate of a hinge for which the equations cannot be solved, whatever the accuracy.
+struct UnsolvableRate {
+  std::size_t hinge = 0;
+  std::string why;  ///< that it moves no mass beyond rounding, or inertia beyond the range of numbers
+};
+/// The first at a state, of at most `largest_examined` speeds; nothing where there is none.
+std::optional<UnsolvableRate> unsolvable_rate(const Model& model, const EquationsOfMotion& equations,
+                                              const State& state);
+
 /// Why a relative tolerance cannot be had at a state: the error of its accelerations, the coordinate without inertia or
 /// the direction with least (of at most `largest_examined` speeds), what may be done. Empty where it can.
 std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance);

@@ -155,16 +155,18 @@ class Run final : public SteppingObserver {
     constexpr std::size_t first = 256, interval = 4;
     return accepted <= first || accepted % interval == 0;
   }
+  static constexpr std::size_t first_look = std::size_t{1} << 18U, look_at_later = std::size_t{1} << 24U;
   /// Whether the steps allowed are too few for the end at the mean of those made: looked at after 2¹⁸ of them, a second
   /// or so, and each time that they have doubled. After 2²⁴ at the mean of the later half: what moved at first and is
   /// held since, as by dry friction, crawls from there on. A phase that passes is shorter.
-  [[nodiscard]] bool out_of_reach(const TwoHalves& steps) const {
-    constexpr std::size_t first_look = std::size_t{1} << 18U, look_at_later = std::size_t{1} << 24U;
-    if (steps.made < first_look) return false;
+  [[nodiscard]] bool out_of_reach(const TwoHalves& steps) const { return steps_needed(steps) > 1; }
+  /// The steps that lead to the end at that pace, in those allowed; 0 before they are looked at.
+  [[nodiscard]] double steps_needed(const TwoHalves& steps) const {
+    if (steps.made < first_look) return 0;
     const bool later = steps.made >= look_at_later;
     const auto made = static_cast<double>(later ? steps.later : steps.made);
     const double gained = steps.now - (later ? steps.middle : steps.begun);
-    return (options_.end - steps.now) * made > static_cast<double>(options_.most_steps) * gained;
+    return (options_.end - steps.now) / gained * (made / static_cast<double>(options_.most_steps));
   }
   void look_at_pace(const TwoHalves& steps, const State& state) {
     if (std::string fault = creep_.fault(steps, state); !fault.empty()) {
@@ -173,6 +175,14 @@ class Run final : public SteppingObserver {
       if (std::string why = options_.too_stiff(state); !why.empty())
         stop_ = {RunStatus::too_stiff, std::move(why), false};
     }
+    // No phase that passes needs so many, and their cause may lie beyond the range of numbers.
+    const double hopeless = steps.made < look_at_later ? 1e6 : 1e3;
+    const double needed = steps_needed(steps), allowed = static_cast<double>(options_.most_steps);
+    if (stop_.status == RunStatus::completed && options_.too_stiff && needed > hopeless)
+      stop_ = {RunStatus::too_stiff,
+               "at the pace of its steps so far the run would need " + brief(needed * allowed) + " of them where " +
+                   brief(allowed) + " are allowed, and what is so fast cannot be told",
+               false};
   }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();

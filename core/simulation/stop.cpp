@@ -54,7 +54,10 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
                 false};
       return {RunStatus::singular, "the mass matrix cannot be solved, however small the step" + body};
     case StepResult::Outcome::step_underflow:
-      return {RunStatus::step_underflow, "the accuracy asked for needs steps below the resolution of time"};
+      return {
+          RunStatus::step_underflow,
+          "the accuracy asked for needs steps below the resolution of time, or below the least that the integrator is "
+          "told"};
     case StepResult::Outcome::ok:
       break;
   }

@@ -43,7 +43,7 @@ TEST(Failures, AnAccuracyThatCannotBeHadIsRefusedAndWhatCanIsRun) {
   folder.write("heavy.yaml", scene);
   const Finished refused = withy(folder, {"run", "heavy.yaml", "--out", "out"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("heavy.yaml: /integrator/rtol: got 1e-06, an accuracy that cannot be had"));
+  EXPECT_THAT(refused.err, HasSubstr("heavy.yaml:3:34: /integrator/rtol: got 1e-06, an accuracy that cannot be had"));
   EXPECT_THAT(refused.err, HasSubstr("modes of 'arm'"));
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
   EXPECT_EQ(withy(folder, {"run", "heavy.yaml", "--set", "integrator.rtol=0.9", "--out", "out"}).status, 0);
@@ -107,6 +107,37 @@ TEST(Failures, OutputsOfAnFmuThatNobodyKnowsAreNamedWithTheNearest) {
   EXPECT_EQ(f.status, 2);
   EXPECT_THAT(f.err, HasSubstr("did you mean 'shoulder.effort'?"));
   EXPECT_FALSE(fs::exists(folder.path() / "q.fmu"));
+}
+
+// What run refuses check refuses, with the place.
+TEST(Failures, AStartThatNoRunCanBeginWithIsBadInputToCheckToo) {
+  const Folder folder;
+  const auto told = [&](const std::string& rod, const std::string& more) {
+    folder.write("s.yaml", "format: withy/1\ntime: {end: 1, output: 0.1}\nbodies:\n  rod: {type: rigid, " + rod +
+                               "}\nhinges:\n  pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: rod}\n" +
+                               more);
+    const Finished checked = withy(folder, {"check", "s.yaml"});
+    const Finished run = withy(folder, {"run", "s.yaml", "--out", "out"});
+    EXPECT_EQ(checked.status, 2);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(checked.err, run.err);
+    return checked.err;
+  };
+  const std::string sound = "mass: 1.2, center_of_mass: [0, -0.5, 0], inertia: [0.1, 0, 0.1, 0, 0, 0]";
+  const std::string massless = told("mass: 0", "");
+  EXPECT_THAT(massless, HasSubstr("s.yaml:6:3: /hinges/pivot: the mass matrix is singular: pivot.0 moves no mass"));
+  EXPECT_THAT(massless, testing::Not(HasSubstr("rtol")));
+  EXPECT_THAT(told(sound, "integrator: {name: dopri5, rtol: 1e-300}\n"),
+              HasSubstr("s.yaml:7:34: /integrator/rtol: got 1e-300, an accuracy that cannot be had"));
+  EXPECT_THAT(told("mass: 1, center_of_mass: [0, 1e300, 0]", ""),
+              HasSubstr("/hinges/pivot: the inertia that pivot.0 moves is beyond the range of numbers"));
+}
+
+TEST(Failures, ALeastStepThatIsTooGreatIsNamed) {
+  const Folder folder;
+  const Finished f = withy(folder, {"run", "scenes/pendulum.yaml", "--set", "integrator.min_step=0.5", "--out", "out"});
+  EXPECT_EQ(f.status, 1);
+  EXPECT_THAT(f.err, HasSubstr("let min_step be smaller: it is 0.5 s"));
 }
 
 TEST(Failures, AFullDiskIsAnErrorWhereverItIsMet) {

@@ -133,6 +133,18 @@ loads: {drag: {type: hinge-spring, hinge: pin, stiffness: 1, damping: 1500}}
   EXPECT_EQ(run_of(values.set_text("integrator=radau", "the test")).status, RunStatus::completed);
 }
 
+// Its square is beyond the range of numbers, and so is the pole that would be named.
+TEST(Causes, AFilterSoFastThatItsPoleCannotBeTold) {
+  const RunSummary s = run_of_text(R"(time: {end: 1}
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+initial: {hinges: {axle: {rate: [1]}}}
+loads: {lag: {type: filter, of: axle, hinge: axle, cutoff: 1e300}}
+)");
+  EXPECT_EQ(s.status, RunStatus::too_stiff) << s.message;
+  EXPECT_LE(s.steps.accepted, std::size_t{1} << 18U) << "it stops at its first look";
+}
+
 /// A wheel that dry friction brings to rest at 2 s and holds there against a push.
 std::string held_by_friction(const std::string& scale) {
   return R"(time: {end: 3}
