@@ -79,7 +79,8 @@ std::optional<double> bound(const std::string& text, const TunedValue& tuned, st
   const auto bare = plain_number(text);
   const QuantityReading reading = bare ? QuantityReading{*bare, {}} : read_quantity(text, unit);
   if (!reading.value) {
-    problems.push_back(fmt::format("--parameters {}: bound {}: {}", tuned.path, in_quotes(text), reading.problem));
+    problems.push_back(fmt::format("--parameters {}: bound {}: {}", tuned.path, in_quotes(text),
+                                   reading.problem.empty() ? "need a number" : reading.problem));
     return {};
   }
   const UnitReading own = read_unit(unit);
@@ -142,8 +143,10 @@ class TunedReader {
       problem(tuned, fmt::format("got {}; need bounds as 2..3, 2.. or ..3", in_quotes(range)));
       return;
     }
+    const std::size_t before = problems_.size();
     if (dots > 0) tuned.least = bound(range.substr(0, dots), tuned, problems_).value_or(-unlimited);
     if (dots + 2 < range.size()) tuned.most = bound(range.substr(dots + 2), tuned, problems_).value_or(unlimited);
+    if (problems_.size() > before) return;
     if (!(tuned.least < tuned.most)) {
       problem(tuned, fmt::format("got bounds {:g} and {:g}; the first has to be less", tuned.least, tuned.most));
     } else if (tuned.start < tuned.least || tuned.start > tuned.most) {

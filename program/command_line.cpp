@@ -18,6 +18,18 @@ Call add(CLI::App& parser, const Command& command) {
   return command.add(options);
 }
 
+/// The command that the words chose, or its part; the parser itself where they chose none.
+const CLI::App& chosen_part(const CLI::App& parser) {
+  const std::vector<CLI::App*> chosen = parser.get_subcommands();
+  return chosen.empty() ? parser : chosen_part(*chosen.back());
+}
+
+/// "withy sweep run".
+std::string words_of(const CLI::App& parser) {
+  const CLI::App* around = parser.get_parent();
+  return around == nullptr ? parser.get_name() : words_of(*around) + ' ' + parser.get_name();
+}
+
 /// What is wrong with words that the parser does not know: which option the first may have been.
 std::string meant_option(const CLI::App& parser, const CLI::ExtrasError& e, int argc, const char* const* argv) {
   std::vector<std::string> known;
@@ -54,16 +66,14 @@ std::optional<ExitStatus> parse(CLI::App& parser, const Program& program, int ar
     parser.parse(argc, argv);
     return {};
   } catch (const CLI::ExtrasError& e) {
-    const std::vector<CLI::App*> chosen = parser.get_subcommands();
-    complain(meant_option(chosen.empty() ? parser : *chosen.back(), e, argc, argv));
-    complain(std::string(program.name) + ' ' + (chosen.empty() ? "" : chosen.back()->get_name() + " ") +
-             "--help names what there is");
+    const CLI::App& of = chosen_part(parser);
+    complain(meant_option(of, e, argc, argv));
+    complain(words_of(of) + " --help names what there is");
     return ExitStatus::bad_input;
   } catch (const CLI::RequiredError& e) {
-    const std::vector<CLI::App*> chosen = parser.get_subcommands();
-    const CLI::App& of = chosen.empty() ? parser : *chosen.back();
+    const CLI::App& of = chosen_part(parser);
     complain(missing(of, program, e));
-    complain(std::string(program.name) + ' ' + (chosen.empty() ? "" : of.get_name() + " ") + "--help says more");
+    complain(words_of(of) + " --help says more");
     return ExitStatus::bad_input;
   } catch (const CLI::ParseError& e) {
     std::ostringstream out;

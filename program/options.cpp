@@ -1,20 +1,60 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <type_traits>
 
 #include "withy/program/command.hpp"
+#include "withy/scene/names.hpp"
 
 namespace withy::program {
+
+namespace {
+
+template <class T>
+struct Plain {
+  using Type = T;
+};
+template <class T>
+struct Plain<std::optional<T>> {
+  using Type = T;
+};
+
+/// What is wrong with a text that is to be a value of a type; the parser's own words are the text alone, it takes -1
+/// for the greatest number without a sign, and an empty text for an option that is not there.
+template <class T>
+std::string problem_of(const std::string& text) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    T read{};
+    const bool good = CLI::detail::lexical_cast(text, read) && !(std::is_unsigned_v<T> && text.starts_with('-'));
+    const char* needed = std::is_floating_point_v<T> ? "number"
+                         : std::is_unsigned_v<T>     ? "whole number from 0"
+                                                     : "whole number";
+    if (!good) return "got " + in_quotes(text) + "; need a " + needed;
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (text.empty()) return "got an empty text; leave it out, or give it a value";
+  }
+  return {};
+}
+
+template <class T>
+void check_type(CLI::Option& option) {
+  option.check(CLI::Validator([](const std::string& text) { return problem_of<typename Plain<T>::Type>(text); }, ""));
+}
+
+}  // namespace
 
 template <class T>
 Options& Options::argument(const std::string& names, T& value, const std::string& meaning) {
   last_ = parser_.add_option(names, value, meaning);
+  check_type<T>(*last_);
   return *this;
 }
 
 template <class T>
 Options& Options::value(const std::string& names, T& value, const std::string& type, const std::string& meaning) {
   last_ = parser_.add_option(names, value, meaning)->type_name(type);
+  check_type<T>(*last_);
   return *this;
 }
 
@@ -53,7 +93,13 @@ Options& Options::with_default() {
 }
 
 Options& Options::positive() {
-  last_->check(CLI::PositiveNumber);
+  last_->check(CLI::Validator(
+      [](const std::string& text) {
+        double x = 0;
+        const bool good = CLI::detail::lexical_cast(text, x) && x > 0;
+        return good ? std::string() : "got " + in_quotes(text) + "; need a number > 0";
+      },
+      "POSITIVE"));
   return *this;
 }
 

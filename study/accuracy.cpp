@@ -39,7 +39,7 @@ std::string trimmed(const std::string& text) {
 }
 
 /// Reads one part into the member that its unit tells.
-void read_part(Accuracy& a, const std::string& part, const std::string& whole) {
+void read_part(Accuracy& a, const std::string& part, const std::string& whole, const std::string& option) {
   std::optional<double> value = plain_number(part);
   std::optional<double>* kind = &a.share;
   if (!value) {
@@ -48,26 +48,26 @@ void read_part(Accuracy& a, const std::string& part, const std::string& whole) {
     if (!value && (value = read_quantity(part, "rad").value)) kind = &a.angle;
   }
   if (!value)
-    throw OptionError("accuracy", "got '" + part + "'; need a share as 1%, a length as 2mm or an angle as 0.1deg");
-  if (*kind) throw OptionError("accuracy", "'" + whole + "' says the same twice");
+    throw OptionError(option, "got '" + part + "'; need a share as 1%, a length as 2mm or an angle as 0.1deg");
+  if (*kind) throw OptionError(option, "'" + whole + "' says the same twice");
   if (kind == &a.share && plain_number(part) && *value >= most_plain_share)
     throw OptionError(
-        "accuracy",
+        option,
         fmt::format("got '{0}', which without a unit is a share: an error of {1:.4g} % of each "
                     "output's own range; need {0}%{2}",
                     part, 100 * *value, *value > 1 ? "" : fmt::format(", or {:.4g}% if that is meant", 100 * *value)));
   if (!(*value > 0) || (kind == &a.share && *value > 1))
-    throw OptionError("accuracy", fmt::format("got '{}'; need above 0{}", part, kind == &a.share ? ", at most 1" : ""));
+    throw OptionError(option, fmt::format("got '{}'; need above 0{}", part, kind == &a.share ? ", at most 1" : ""));
   *kind = value;
 }
 
 }  // namespace
 
-Accuracy Accuracy::parse(const std::string& text) {
+Accuracy Accuracy::parse(const std::string& text, const std::string& option) {
   Accuracy a;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    read_part(a, trimmed(text.substr(begin, end - begin)), text);
+    read_part(a, trimmed(text.substr(begin, end - begin)), text, option);
     begin = end + 1;
   }
   return a;

@@ -28,7 +28,7 @@ struct Accuracy {
   std::optional<double> length;  ///< [m]
 
   /// Reads "1%", "0.01", "2 mm", "0.1 deg", or several of them with commas between. \throws InputError
-  static Accuracy parse(const std::string& text);
+  static Accuracy parse(const std::string& text, const std::string& option = "accuracy");
   /// Greatest distance allowed of each output, given what shares are of; infinite where nothing is asked of it. What
   /// has no scale may be off by 1e-9 of its unit.
   [[nodiscard]] Distances limits(const Outputs& outputs, const Distances& scales) const;
