@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 #include <system_error>
 
-#include "withy/results/csv.hpp"
+#include "withy/scene/csv_rows.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/names.hpp"
@@ -29,22 +28,24 @@ std::string text_of(const std::string& file) {
 
 ListColumn read_list_column(const std::string& file, const std::string& column, bool named) {
   const std::string text = text_of(file);
-  std::istringstream in(text);
-  std::string line;
-  std::getline(in, line);
-  const std::vector<std::string> head = csv_cells(line);
+  CsvRows rows(text);
+  const std::vector<std::string>& head = rows.head().cells;
+  if (const std::string problem = rows.head_problem(); !problem.empty())
+    throw study::InputError(fmt::format("{}:1:1: {}", file, problem));
   const auto at = std::find(head.begin(), head.end(), column);
   if (at == head.end() && (named || head.size() != 1))
-    throw study::InputError(fmt::format("{}:1: no column {}{}", file, in_quotes(column), suggestion(column, head)));
+    throw study::InputError(fmt::format("{}:1:1: no column {}{}", file, in_quotes(column), suggestion(column, head)));
   const std::size_t index = at == head.end() ? 0 : static_cast<std::size_t>(at - head.begin());
   ListColumn list{{}, sha256(text)};
   bool plain = true;
-  for (std::size_t number = 2; std::getline(in, line); ++number) {
-    const std::vector<std::string> cells = csv_cells(line);
-    if (cells.size() == 1 && cells[0].empty() && head.size() > 1) continue;
-    if (cells.size() != head.size() || cells[index].empty())
-      throw study::InputError(fmt::format("{}:{}: need {} cells, none empty", file, number, head.size()));
-    const auto x = plain_number(cells[index]);
+  for (CsvRow row; rows.next(row);) {
+    const std::string problem = rows.problem(row);
+    if (!problem.empty()) throw study::InputError(fmt::format("{}:{}:1: {}", file, row.line, problem));
+    const std::string& cell = row.cells[index];
+    if (cell.empty())
+      throw study::InputError(fmt::format("{}:{}:{}: got an empty cell; need a value of {}", file, row.line,
+                                          row.columns[index], in_quotes(column)));
+    const auto x = plain_number(cell);
     if (plain && !x) {
       for (const double known : list.levels.numbers) list.levels.values.emplace_back(known);
       list.levels.numbers.clear();
@@ -53,7 +54,7 @@ ListColumn read_list_column(const std::string& file, const std::string& column, 
     if (plain)
       list.levels.numbers.push_back(*x);
     else
-      list.levels.values.push_back(x ? Value(*x) : Value(cells[index]));
+      list.levels.values.push_back(x ? Value(*x) : Value(cell));
   }
   if (list.levels.size() == 0) throw study::InputError(file + ": need a head and at least one row");
   return list;

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <system_error>
 
 #include "withy/results/csv.hpp"
+#include "withy/scene/csv_rows.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/names.hpp"
@@ -29,17 +29,6 @@ struct HeadCell {
   }
 };
 
-/// Where the cells of a line begin, counted from 1.
-std::vector<std::size_t> places_of(const std::string& line) {
-  std::vector<std::size_t> places = {1};
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') quoted = !quoted;
-    if (line[i] == ',' && !quoted) places.push_back(i + 2);
-  }
-  return places;
-}
-
 class MeasuredReader {
  public:
   MeasuredReader(const MeasuredWish& wish, const std::vector<Column>& results, std::vector<std::string>& problems)
@@ -55,12 +44,14 @@ class MeasuredReader {
       problems_.emplace_back(e.what());
       return data_;
     }
-    std::istringstream in(text);
-    std::string line;
-    std::getline(in, line);
-    read_head(line);
-    for (number_ = 2; std::getline(in, line); ++number_)
-      if (line.find_first_not_of(" \t\r") != std::string::npos) read_row(line);
+    CsvRows rows(text);
+    if (const std::string wrong = rows.head_problem(); !wrong.empty()) {
+      problem(1, 1, wrong);
+      return data_;
+    }
+    read_head(rows.head());
+    for (CsvRow row; rows.next(row);) read_row(rows, row);
+    number_ = rows.line() + 1;
     if (time_ && data_.times.size() < 2) problem(number_, 1, "need at least two rows of data");
     for (MeasuredColumn& column : data_.columns) weigh(column);
     leave_out_constant();
@@ -98,19 +89,16 @@ class MeasuredReader {
     return one.value.value_or(1);
   }
 
-  void read_head(const std::string& line) {
-    const std::vector<std::string> cells = csv_cells(line);
-    const std::vector<std::size_t> places = places_of(line);
+  void read_head(const CsvRow& head) {
     for (const Column& c : results_) known_.push_back(column_name(c.name));
-    cells_ = cells.size();
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const HeadCell cell(cells[k]);
+    for (std::size_t k = 0; k < head.cells.size(); ++k) {
+      const HeadCell cell(head.cells[k]);
       if ((cell.name == "t" || cell.name == "time") && !time_) {
         time_ = k;
-        to_seconds_ = factor(cell, "s", places[k]);
+        to_seconds_ = factor(cell, "s", head.columns[k]);
         continue;
       }
-      add_column(cell, cells[k], k, places[k]);
+      add_column(cell, head.cells[k], k, head.columns[k]);
     }
     if (!time_) problem(1, 1, "need a column t[s]");
     if (data_.columns.empty() && wish_.outputs.empty())
@@ -147,13 +135,14 @@ class MeasuredReader {
     return x;
   }
 
-  void read_row(const std::string& line) {
-    const std::vector<std::string> cells = csv_cells(line);
-    const std::vector<std::size_t> places = places_of(line);
-    if (cells.size() != cells_) {
-      problem(number_, 1, fmt::format("got {} cells; the head has {}", cells.size(), cells_));
+  void read_row(const CsvRows& rows, const CsvRow& row) {
+    number_ = row.line;
+    if (const std::string wrong = rows.problem(row); !wrong.empty()) {
+      problem(number_, 1, wrong);
       return;
     }
+    const std::vector<std::string>& cells = row.cells;
+    const std::vector<std::size_t>& places = row.columns;
     if (!time_) return;
     const auto time = number(cells[*time_], places[*time_]);
     if (!time) {
@@ -263,7 +252,7 @@ class MeasuredReader {
   std::optional<std::size_t> time_;
   double to_seconds_ = 1;
   std::vector<Source> sources_;  ///< one a column that is compared
-  std::size_t cells_ = 0, number_ = 1, told_ = 0, hidden_ = 0, late_ = 0;
+  std::size_t number_ = 1, told_ = 0, hidden_ = 0, late_ = 0;
 };
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "withy/campaign/store.hpp"
 #include "withy/results/csv.hpp"
 #include "withy/results/report/report_page.hpp"
+#include "withy/scene/csv_rows.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy::campaign {

@@ -35,29 +35,6 @@ std::string column_name(const std::string& column) {
   return name;
 }
 
-std::vector<std::string> csv_cells(std::string_view line) {
-  constexpr std::string_view blanks = " \t\r";
-  std::vector<std::string> cells;
-  for (std::size_t at = 0; at <= line.size(); ++at) {
-    at = std::min(line.find_first_not_of(blanks, at), line.size());
-    std::string cell;
-    if (at < line.size() && line[at] == '"') {
-      for (++at; at < line.size() && (line[at] != '"' || line.substr(at + 1, 1) == "\""); ++at) {
-        if (line[at] == '"') ++at;
-        cell += line[at];
-      }
-      at = std::min(line.find(',', at), line.size());
-    } else {
-      const std::size_t end = std::min(line.find(',', at), line.size());
-      const std::size_t last = line.substr(at, end - at).find_last_not_of(blanks);
-      if (last != std::string_view::npos) cell = line.substr(at, last + 1);
-      at = end;
-    }
-    cells.push_back(std::move(cell));
-  }
-  return cells;
-}
-
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted = "\"";

@@ -16,8 +16,6 @@ std::string csv_line(std::span<const double> numbers);
 /// The name of a column in tables, where brackets hold units alone: `boom.bending_y.2.rate` for
 /// `boom.bending_y[2].rate`.
 std::string column_name(const std::string& column);
-/// The cells of a line, without blanks around them; a cell in quotes may hold commas and doubled quotes.
-std::vector<std::string> csv_cells(std::string_view line);
 /// A cell with any text: in quotes where it would be read as something else.
 std::string csv_text(const std::string& text);
 /// The head of a CSV file: `name.component[unit],…`, the unit `1` where there is none.

@@ -9,6 +9,7 @@
 
 #include "withy/results/csv.hpp"
 #include "withy/results/results_error.hpp"
+#include "withy/scene/csv_rows.hpp"
 
 namespace withy {
 namespace {
@@ -92,8 +93,9 @@ void read_csv(const std::filesystem::path& path, Recorder& recorder) {
   try {
     // Where the end comes before that of the line, the line was not written whole.
     while (std::getline(in, line) && !in.eof()) {
+      if (line.ends_with('\r')) line.pop_back();
       if (++number == 1) {
-        const std::vector<Column> head = read_csv_head(line);
+        const std::vector<Column> head = read_csv_head(behind_mark(line));
         columns = head.size();
         recorder.begin(head);
         continue;

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <system_error>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/scene/csv_rows.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
@@ -19,17 +19,6 @@ namespace withy::study {
 namespace {
 
 constexpr std::size_t cubic_points = 4;
-
-std::vector<std::string> cells_of(std::string line) {
-  if (line.ends_with('\r')) line.pop_back();
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t\""), last = cell.find_last_not_of(" \t\"");
-    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-  }
-  return cells;
-}
 
 /// A column of the head: "shoulder[deg]" has the name shoulder and the unit deg.
 struct Head {
@@ -48,10 +37,15 @@ struct Source {
   std::vector<double>* values;  ///< where they go
 };
 
-double factor_of(const Head& head, const std::string& si_unit, const std::string& file) {
+/// The place of a cell, as "path.csv:3:7".
+std::string place_of(const std::string& file, const CsvRow& row, std::size_t cell) {
+  return fmt::format("{}:{}:{}", file, row.line, row.columns[cell]);
+}
+
+double factor_of(const Head& head, const std::string& si_unit, const std::string& place) {
   if (head.unit.empty()) return 1;
   const QuantityReading one = read_quantity("1 " + head.unit, si_unit);
-  if (!one.value) throw InputError(fmt::format("{}:1: column '{}': {}", file, head.name, one.problem));
+  if (!one.value) throw InputError(fmt::format("{}: column '{}': {}", place, head.name, one.problem));
   return *one.value;
 }
 
@@ -76,64 +70,70 @@ Extended extended(const std::vector<double>& times, const std::vector<double>& v
 
 /// Notes the columns that are left out. Refuses one that is hardly meant to be: its name is near that of a hinge which
 /// has no column.
-void leave_out(const std::vector<std::string>& head, const Model& model, const std::string& file,
-               RecordedMotion& motion) {
+void leave_out(const CsvRow& head, const Model& model, const std::string& file, RecordedMotion& motion) {
   std::vector<std::string> missing;
   for (const HingeNode& hinge : model.hinges())
     if (coordinate_columns(hinge).size() == 1 && !motion.coordinates.contains(hinge.name))
       missing.push_back(hinge.name);
-  for (const std::string& text : head) {
-    const Head h(text);
+  for (std::size_t k = 0; k < head.cells.size(); ++k) {
+    const Head h(head.cells[k]);
     if (h.name == "t" || motion.coordinates.contains(h.name)) continue;
-    motion.ignored.push_back(text);
+    motion.ignored.push_back(head.cells[k]);
     const std::string guess = h.name.find('.') != std::string::npos ? "" : nearest(h.name, missing);
     if (!guess.empty())
-      throw InputError(fmt::format("{}:1: no hinge is named '{}'; did you mean '{}'?", file, h.name, guess));
+      throw InputError(
+          fmt::format("{}: no hinge is named '{}'; did you mean '{}'?", place_of(file, head, k), h.name, guess));
   }
 }
 
 /// The columns of the head that are read, time first.
-std::vector<Source> sources_of(const std::vector<std::string>& head, const Model& model, const std::string& file,
+std::vector<Source> sources_of(const CsvRow& head, const Model& model, const std::string& file,
                                RecordedMotion& motion) {
   std::vector<Source> sources;
-  for (std::size_t k = 0; k < head.size(); ++k) {
-    const Head h(head[k]);
-    if (h.name == "t") sources.insert(sources.begin(), {k, factor_of(h, "s", file), &motion.times});
+  const auto twice = [&](std::size_t k) {
+    return InputError(fmt::format("{}: column '{}' is there twice", place_of(file, head, k), Head(head.cells[k]).name));
+  };
+  bool timed = false;
+  for (std::size_t k = 0; k < head.cells.size(); ++k) {
+    const Head h(head.cells[k]);
+    const std::string place = place_of(file, head, k);
+    if (h.name == "t") {
+      if (timed) throw twice(k);
+      sources.insert(sources.begin(), {k, factor_of(h, "s", place), &motion.times});
+      timed = true;
+    }
     for (const HingeNode& hinge : model.hinges()) {
       const auto columns = coordinate_columns(hinge);
       if (hinge.name != h.name || columns.size() != 1) continue;
       const auto [made, is_new] = motion.coordinates.emplace(h.name, std::vector<double>());
-      if (!is_new) throw InputError(fmt::format("{}:1: column '{}' is there twice", file, h.name));
-      sources.push_back({k, factor_of(h, columns[0].unit, file), &made->second});
+      if (!is_new) throw twice(k);
+      sources.push_back({k, factor_of(h, columns[0].unit, place), &made->second});
     }
   }
-  const bool timed = !sources.empty() && sources.front().values == &motion.times;
   if (timed) leave_out(head, model, file, motion);
   if (timed && !motion.coordinates.empty()) return sources;
   std::string known;
   for (const HingeNode& hinge : model.hinges())
     if (coordinate_columns(hinge).size() == 1) known += (known.empty() ? "" : ", ") + hinge.name;
-  throw InputError(fmt::format("{}:1: need a column {}", file,
+  throw InputError(fmt::format("{}:1:1: need a column {}", file,
                                timed ? "named after a hinge of one coordinate; there are " + known : "t[s]"));
 }
 
-void read_row(const std::vector<std::string>& cells, const std::vector<Source>& sources, const std::string& file,
-              std::size_t number, const std::vector<double>& times) {
+void read_row(const CsvRow& row, const std::vector<Source>& sources, const std::string& file,
+              const std::vector<double>& times) {
   for (const Source& s : sources) {
-    if (s.column >= cells.size())
-      throw InputError(fmt::format("{}:{}: {} cells, where the head asks for one in column {}; need a number there",
-                                   file, number, cells.size(), s.column + 1));
-    const auto value = plain_number(cells[s.column]);
+    const std::string& cell = row.cells[s.column];
+    const auto value = plain_number(cell);
     if (!value)
-      throw InputError(fmt::format("{}:{}: got {} in column {}; need a number", file, number,
-                                   in_quotes(cells[s.column]), s.column + 1));
+      throw InputError(fmt::format("{}: got {} in column {}; need a number", place_of(file, row, s.column),
+                                   in_quotes(cell), s.column + 1));
     s.values->push_back(s.factor * *value);
   }
+  const std::string place = place_of(file, row, sources.front().column);
   const std::size_t rows = times.size();
-  if (rows == 1 && times[0] != 0)
-    throw InputError(fmt::format("{}:{}: begins at {:g} s; need 0", file, number, times[0]));
+  if (rows == 1 && times[0] != 0) throw InputError(fmt::format("{}: begins at {:g} s; need 0", place, times[0]));
   if (rows > 1 && !(times[rows - 1] > times[rows - 2]))
-    throw InputError(fmt::format("{}:{}: got the time {:g} s after {:g} s; need times that increase", file, number,
+    throw InputError(fmt::format("{}: got the time {:g} s after {:g} s; need times that increase", place,
                                  times[rows - 1], times[rows - 2]));
 }
 
@@ -166,14 +166,17 @@ std::string text_of(const std::string& file) {
 
 RecordedMotion read_recorded_motion(const std::filesystem::path& path, const Model& model) {
   const std::string file = path.string();
-  std::istringstream in(text_of(file));
-  std::string line;
-  if (!std::getline(in, line)) throw InputError(file + ": empty; need a head as t[s],shoulder[rad],elbow[rad]");
+  const std::string text = text_of(file);
+  if (text.empty()) throw InputError(file + ": empty; need a head as t[s],shoulder[rad],elbow[rad]");
+  CsvRows rows(text);
+  if (const std::string problem = rows.head_problem(); !problem.empty())
+    throw InputError(fmt::format("{}:1:1: {}", file, problem));
   RecordedMotion motion;
-  const std::vector<Source> sources = sources_of(cells_of(line), model, file, motion);
-  for (std::size_t number = 2; std::getline(in, line); ++number) {
-    const std::vector<std::string> cells = cells_of(line);
-    if (!cells.empty()) read_row(cells, sources, file, number, motion.times);
+  const std::vector<Source> sources = sources_of(rows.head(), model, file, motion);
+  for (CsvRow row; rows.next(row);) {
+    if (const std::string problem = rows.problem(row); !problem.empty())
+      throw InputError(fmt::format("{}:{}:1: {}", file, row.line, problem));
+    read_row(row, sources, file, motion.times);
   }
   if (motion.times.size() < 2) throw InputError(file + ": need at least two rows");
   return motion;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -157,6 +158,25 @@ cases: 2
     drawn.insert(v[3].number());
   }
   EXPECT_EQ(drawn.size(), 12U) << "drawn anew for each case";
+}
+
+TEST(Cases, ListsAreReadAsSpreadsheetsWriteThem) {
+  const PlanFolder folder;
+  folder.write("pairs.csv", "\xEF\xBB\xBFgravity.1,bodies.rod.mass\r\n-9,1\r\n\r\n-8,2\r\n");
+  const std::string vary = "vary: {gravity.1: {list: pairs.csv}}\n";
+  EXPECT_EQ(column(folder.plan(vary), 0), (std::vector<double>{-9, -8}));
+  const auto problem = [&](const std::string& text) -> std::string {
+    folder.write("pairs.csv", text);
+    try {
+      static_cast<void>(folder.plan(vary));
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(problem("gravity.1;mass\n-9;1\n"), testing::HasSubstr("pairs.csv:1:1: got semicolons between the cells"));
+  EXPECT_THAT(problem("gravity.1,mass\n-9,5,1\n"), testing::HasSubstr("pairs.csv:2:1: got 3 cells; the head has 2"));
+  EXPECT_THAT(problem("mass,gravity.1\n1,\n"), testing::HasSubstr("pairs.csv:2:3: got an empty cell"));
 }
 
 TEST(Cases, LatinValuesFillEveryStratumAndAreNotInOrder) {

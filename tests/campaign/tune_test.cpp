@@ -255,18 +255,27 @@ TEST(Tune, WritesASceneThatFits) {
   EXPECT_NEAR(again.after, again.before, 1e-6 * again.before);
 }
 
+/// What is said of a question about data.
+std::string refusal(const TuneFolder& folder, const TuneQuestion& question, const std::string& data) {
+  folder.write("data.csv", data);
+  try {
+    static_cast<void>(folder.tuned(question));
+  } catch (const study::InputError& e) {
+    return e.what();
+  }
+  return "nothing was refused";
+}
+
 TEST(Tune, TellsAllThatIsWrongAtOnce) {
   const TuneFolder folder;
-  folder.write("data.csv", "t[s],slide[kg],slyde.rate[m/s],note\n0,1,2,a\n0.1,x,2,b\n0.1,1,2,c\n0.2,1,2\n9,1,2,d\n");
+  const std::string data = "t[s],slide[kg],slyde.rate[m/s],note\n0,1,2,a\n0.1,x,2,b\n0.1,1,2,c\n0.2,1,2\n9,1,2,d\n";
   TuneQuestion question;
   question.parameters = {"loads.sprong.stiffness", "bodies.block.type", "loads.spring.damping=2..1",
                          "bodies.block.mass=3..5", "loads.spring.stiffness=1 kg.."};
   question.deviations = {"slide=-1 mm"};
-  try {
-    static_cast<void>(folder.tuned(question));
-    FAIL() << "nothing was refused";
-  } catch (const study::InputError& e) {
-    const std::string what = e.what();
+  for (const std::string& text : {data, "\xEF\xBB\xBF" + data}) {  // with the byte-order mark of spreadsheets too
+    const std::string what = refusal(folder, question, text);
+    EXPECT_THAT(what, testing::Not(HasSubstr("need a column t")));
     for (const char* part :
          {"--parameters loads.sprong.stiffness: no \"sprong\" here to change; did you mean 'spring'?",
           "--parameters bodies.block.type: is no number", "--parameters loads.spring.damping: got bounds 2 and 1",
@@ -279,6 +288,8 @@ TEST(Tune, TellsAllThatIsWrongAtOnce) {
           "--deviations \"slide=-1 mm\": need a number > 0"})
       EXPECT_THAT(what, HasSubstr(part));
   }
+  EXPECT_THAT(refusal(folder, {}, "t[s];slide[m]\n0;1\n0,1;2\n"),
+              HasSubstr("data.csv:1:1: got semicolons between the cells; need commas"));
 }
 
 }  // namespace

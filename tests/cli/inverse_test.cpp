@@ -154,6 +154,22 @@ TEST(Inverse, SaysWhichColumnsItLeavesOut) {
   EXPECT_THAT(led("t[s],shoulder[rad]", {"all"}), testing::Not(HasSubstr("left out")));
 }
 
+// As spreadsheets write them: a byte-order mark first, other ends of lines, blank ones at the end.
+TEST(Inverse, ReadsWhatSpreadsheetsWrite) {
+  const Folder folder;
+  const auto led = [&](const std::string& table) {
+    folder.write("path.csv", table);
+    const Finished f =
+        withy(folder, {"inverse", "scenes/two-link-slew.yaml", "--motion", "path.csv", "--set", "loads={}", "--json"});
+    EXPECT_EQ(f.status, 0) << f.err;
+    return f.out;
+  };
+  const std::string plain = led("t[s],shoulder[rad]\n0,0\n1,0.1\n");
+  EXPECT_EQ(led("\xEF\xBB\xBFt[s],shoulder[rad]\n0,0\n1,0.1\n"), plain);
+  EXPECT_EQ(led("\xEF\xBB\xBF\"t[s]\",\"shoulder[rad]\"\r\n0,0\r\n1,0.1\r\n\r\n"), plain);
+  EXPECT_EQ(led("t[s],shoulder[rad]\r0,0\r1,0.1\r"), plain);
+}
+
 TEST(Inverse, WhatIsNoMotionIsBadInput) {
   const Folder folder;
   const auto refused = [&](const std::string& table, const char* message) {
@@ -165,14 +181,17 @@ TEST(Inverse, WhatIsNoMotionIsBadInput) {
   };
   refused("", "need a head");
   refused("shoulder[rad]\n0\n1\n", "need a column t[s]");
-  refused("t[s],sholder[rad]\n0,0\n1,1\n", "path.csv:1: no hinge is named 'sholder'; did you mean 'shoulder'?");
+  refused("t[s],sholder[rad]\n0,0\n1,1\n", "path.csv:1:6: no hinge is named 'sholder'; did you mean 'shoulder'?");
   refused("t[s],waist[rad]\n0,0\n1,1\n", "there are shoulder, elbow");
-  refused("t[s],shoulder[m]\n0,0\n1,1\n", "path.csv:1: column 'shoulder'");
+  refused("t[s],shoulder[m]\n0,0\n1,1\n", "path.csv:1:6: column 'shoulder'");
   refused("t[s],shoulder[rad],elbw[rad]\n0,0,0\n1,1,1\n", "no hinge is named 'elbw'; did you mean 'elbow'?");
   refused("t[s],shoulder,shoulder\n0,0,0\n1,1,1\n", "there twice");
-  refused("t[s],shoulder[rad]\n0,0\n1,one\n", "path.csv:3: got \"one\" in column 2; need a number");
-  refused("t[s],shoulder[rad]\n0,0\n1\n", "path.csv:3: 1 cells, where the head asks for one in column 2");
-  refused("t[s],shoulder[rad]\n0,0\n1,1\n1,2\n", "path.csv:4: got the time 1 s after 1 s; need times that increase");
+  refused("t[s],shoulder[rad]\n0,0\n1,one\n", "path.csv:3:3: got \"one\" in column 2; need a number");
+  refused("t[s],shoulder[rad]\n0,0\n1\n", "path.csv:3:1: got 1 cells; the head has 2");
+  refused("t[s],t[s],shoulder\n0,0,0\n1,1,1\n", "path.csv:1:6: column 't' is there twice");
+  refused("t[s],shoulder[rad]\n0,0\n0,5,1\n", "path.csv:3:1: got 3 cells; the head has 2");
+  refused("t[s];shoulder[rad]\n0;0\n0,5;1\n", "path.csv:1:1: got semicolons between the cells; need commas");
+  refused("t[s],shoulder[rad]\n0,0\n1,1\n1,2\n", "path.csv:4:1: got the time 1 s after 1 s; need times that increase");
   refused("t[s],shoulder[rad]\n1,0\n2,1\n", "begins at 1 s");
   refused("t[s],shoulder[rad]\n0,0\n", "two rows");
   const Finished f = withy(folder, {"inverse", "scenes/two-link-slew.yaml"});

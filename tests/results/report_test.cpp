@@ -226,6 +226,11 @@ TEST(Csv, IsReadBackAsItWasWrittenButForALastLineThatWasCut) {
   EXPECT_EQ(back.columns()[1].unit, "rad/s");
   EXPECT_EQ(back.columns()[2].name, "boom.bending_y.2") << "brackets hold units alone";
   EXPECT_EQ(back.columns()[2].unit, "1");
+  folder.write("excel.csv", "\xEF\xBB\xBFt[s],x[m]\r\n0,1\r\n0.1,2\r\n");  // as a spreadsheet keeps it
+  MemoryRecorder kept;
+  read_csv(folder / "excel.csv", kept);
+  EXPECT_EQ(kept.columns()[0].name, "t");
+  EXPECT_EQ(kept.column("x"), (std::vector<double>{1, 2}));
   for (const auto& [text, why] : {std::pair("t[s],x\n", ":1: expected name[unit], got 'x'"),
                                   std::pair("t[s],x[m]\n0,1\n0,1,2\n", ":3: expected 2 numbers"),
                                   std::pair("t[s],x[m]\n0,one\n", ":2: expected numbers")}) {
