@@ -20,8 +20,10 @@ class EventLoad final : public Load {
 
 using Locked = std::vector<std::size_t>;
 
-Locked after(Locked locked, const ActingEvent& event) {
-  for (const EventAction& action : event.actions) {
+}  // namespace
+
+Locked ActingEvent::leaves_locked(Locked locked) const {
+  for (const EventAction& action : actions) {
     const auto at = std::lower_bound(locked.begin(), locked.end(), action.index);
     const bool held = at != locked.end() && *at == action.index;
     if (action.kind == EventAction::Kind::lock && !held) locked.insert(at, action.index);
@@ -29,8 +31,6 @@ Locked after(Locked locked, const ActingEvent& event) {
   }
   return locked;
 }
-
-}  // namespace
 
 int EventPlan::configuration(const Locked& locked) const {
   const auto at = std::find(configurations.begin(), configurations.end(), locked);
@@ -44,7 +44,7 @@ void EventPlan::find_configurations(std::vector<Locked> from) {
   };
   for (const Locked& locked : from) add(locked);
   for (std::size_t i = 0; i < configurations.size(); ++i) {
-    for (const ActingEvent& event : events) add(after(configurations[i], event));
+    for (const ActingEvent& event : events) add(event.leaves_locked(configurations[i]));
     if (configurations.size() > most_configurations)
       throw std::invalid_argument("the events lock and unlock hinges in more than " +
                                   std::to_string(most_configurations) + " combinations");
@@ -63,6 +63,12 @@ EventBook::EventBook(const Model& model) {
 
 const Locked& EventBook::locked(std::span<const double> y) const {
   return plan().configurations[static_cast<std::size_t>(y[first_])];
+}
+
+void EventBook::set_configuration(std::span<double> y, int configuration) const {
+  if (configuration < 0 || static_cast<std::size_t>(configuration) >= plan().configurations.size())
+    throw std::logic_error("hinges are locked together that no event locks together");
+  y[first_] = configuration;
 }
 
 EventNumbers EventBook::numbers(std::span<const double> y, std::size_t event) const {

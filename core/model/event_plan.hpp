@@ -41,6 +41,9 @@ struct ActingEvent {
   bool repeats = false;   ///< every time; else once
   bool stops = false;     ///< the run ends there, completed
   std::vector<EventAction> actions;
+
+  /// The hinges, increasing, that are locked once it has acted where `locked` were, increasing.
+  [[nodiscard]] std::vector<std::size_t> leaves_locked(std::vector<std::size_t> locked) const;
 };
 
 /// All events of a scene that act.
@@ -107,7 +110,8 @@ class EventBook {
   /// Index in State::y of the configuration.
   [[nodiscard]] std::size_t place() const { return first_; }
   [[nodiscard]] const std::vector<std::size_t>& locked(std::span<const double> y) const;
-  void set_configuration(std::span<double> y, int configuration) const { y[first_] = configuration; }
+  /// \throws std::logic_error where the plan has no configuration of this index.
+  void set_configuration(std::span<double> y, int configuration) const;
   [[nodiscard]] EventNumbers numbers(std::span<const double> y, std::size_t event) const;
   void set_numbers(std::span<double> y, std::size_t event, const EventNumbers& numbers) const;
   /// Sets what has been done to nothing; events at a time wait for it.

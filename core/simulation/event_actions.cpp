@@ -106,14 +106,15 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
 
 /// Does what an event asks for; false where the mass matrix cannot be solved.
 bool EventActions::perform(std::size_t event, State& state) {
+  using Kind = EventAction::Kind;
+  const EventPlan& plan = book_.plan();
+  const ActingEvent& acting = plan.events[event];
+  // All at once: the plan knows what is locked when an event has done everything, not what would be in between.
+  book_.set_configuration(state.y, plan.configuration(acting.leaves_locked(book_.locked(state.y))));
   bool locks = false;
-  for (const EventAction& action : book_.plan().events[event].actions) {
-    if (action.kind == EventAction::Kind::form) {
-      change_form(state, action);
-    } else {
-      change_configuration(state, action);
-      locks = locks || action.kind == EventAction::Kind::lock;
-    }
+  for (const EventAction& action : acting.actions) {
+    if (action.kind == Kind::form) change_form(state, action);
+    locks = locks || action.kind == Kind::lock;
   }
   if (!locks) return true;
   const auto kinetic = [&] {
@@ -146,15 +147,6 @@ void EventActions::change_form(State& state, const EventAction& action) {
   std::vector<double> begun(node.continuous_slot.count);
   node.continuous->begin(node.view(state.time, state.y, layout, scratch), begun);
   std::copy(begun.begin(), begun.end(), state.y.begin() + static_cast<std::ptrdiff_t>(node.continuous_slot.first));
-}
-
-void EventActions::change_configuration(State& state, const EventAction& action) const {
-  std::vector<std::size_t> locked = book_.locked(state.y);
-  const auto at = std::lower_bound(locked.begin(), locked.end(), action.index);
-  const bool held = at != locked.end() && *at == action.index;
-  if (action.kind == EventAction::Kind::lock && !held) locked.insert(at, action.index);
-  if (action.kind == EventAction::Kind::unlock && held) locked.erase(at);
-  book_.set_configuration(state.y, book_.plan().configuration(locked));
 }
 
 /// The accelerations, at rest, that come from those of driven speeds and from efforts on the others, without weight

@@ -48,7 +48,6 @@ class EventActions {
   [[nodiscard]] bool over_at(std::size_t event, std::span<const double> y) const;
   bool perform(std::size_t event, State& state);
   void change_form(State& state, const EventAction& action);
-  void change_configuration(State& state, const EventAction& action) const;
   Evaluation settle(State& state);
   void respond(std::span<const double> y, std::span<const double> driven, std::span<const double> efforts,
                std::span<double> response);

@@ -179,6 +179,65 @@ events: {throw: {at: 1, do: {release: ball}}}
   }
 }
 
+// In any order of the list; none of the sets in between is one that an event leaves.
+TEST(ActingEvents, hinges_that_one_event_locks_stop_as_by_two_at_one_instant_and_are_let_go_together) {
+  const std::string time = "time: {end: 3, output: 0.25}\n", free = "do: {unlock: [axle, clutch]}}\n";
+  const ActedRun two(discs(time + "events: {a: {at: 1, do: {lock: axle}}, b: {at: 1, do: {lock: clutch}}}\n"));
+  const double kinetic = 0.5 * 0.2 * 1 + 0.5 * 0.3 * 25;
+  for (const std::string list : {"[axle, clutch]", "[clutch, axle]"}) {
+    const ActedRun one(discs(time + "events:\n  stop: {at: 1, do: {lock: " + list + "}}\n  go: {at: 2, " + free));
+    ASSERT_EQ(one.summary.status, RunStatus::completed) << one.summary.message;
+    EXPECT_NEAR(one.event(0).loss, kinetic, 1e-12);
+    EXPECT_NEAR(one.event(0).loss, two.event(0).loss + two.event(1).loss, 1e-12);
+    EXPECT_LT(one.summary.energy_drift, 1e-12);
+    for (const char* hinge : {"axle", "clutch"}) {
+      EXPECT_EQ(one.rate(hinge), 0.0);
+      EXPECT_NEAR(one.position(hinge, one.summary.final), two.position(hinge, two.summary.final), 1e-13);
+    }
+    EXPECT_EQ(EventBook(*one.scene.model).locked(one.summary.final.y).size(), 0U);
+  }
+}
+
+/// An upper and a lower arm under gravity on hinges of this type; `rest` follows.
+std::string hung_arms(const std::string& type, const std::string& rest) {
+  return R"(format: withy/1
+gravity: [0, -9.81, 0]
+integrator: {name: dop853, rtol: 1e-11, atol: 1e-13}
+time: {end: 1, output: 0.1}
+bodies:
+  upper: {type: rigid, mass: 1, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0], frames: {end: {position: [1, 0, 0]}}}
+  lower: {type: rigid, mass: 1, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}
+hinges:
+  shoulder: {)" +
+         type + R"(, parent: world, child: upper}
+  elbow: {)" +
+         type + ", parent: upper.end, child: lower}\n" + rest;
+}
+
+TEST(ActingEvents, hinges_that_one_event_unlocks_move_as_those_that_were_free_at_first) {
+  const std::string hinge = "type: revolute, axis: [0, 0, 1]";
+  const ActedRun free(hung_arms(hinge, ""));
+  const ActedRun freed(hung_arms(hinge,
+                                 "initial: {time: -1, locked: [shoulder, elbow]}\n"
+                                 "events: {go: {at: 0, do: {unlock: [elbow, shoulder]}}}\n"));
+  ASSERT_EQ(freed.summary.status, RunStatus::completed) << freed.summary.message;
+  EXPECT_LT(freed.summary.energy_drift, 1e-9);
+  for (const char* name : {"shoulder", "elbow"})
+    EXPECT_NEAR(freed.position(name, freed.summary.final), free.position(name, free.summary.final), 1e-9);
+}
+
+TEST(ActingEvents, bodies_that_one_event_releases_fall_side_by_side) {
+  const ActedRun run(hung_arms("type: weld", "events: {drop: {at: 0.3, do: {release: [upper, lower]}}}\n"));
+  ASSERT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
+  const auto seen = run.equations->make_observation();
+  seen->observe(run.summary.final.y);
+  for (const auto& [body, x] : {std::pair("upper", 0.0), std::pair("lower", 1.0)}) {
+    const auto position = seen->frame_pose(run.scene.model->body(body), 0).position;
+    EXPECT_NEAR(position[0], x, 1e-10);
+    EXPECT_NEAR(position[1], -0.5 * 9.81 * 0.7 * 0.7, 1e-9);
+  }
+}
+
 TEST(ActingEvents, a_latch_at_high_speed_is_named_where_it_ends_the_run) {
   const ActedRun run(R"(format: withy/1
 time: {end: 1, output: 0.5}
