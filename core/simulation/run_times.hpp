@@ -46,7 +46,9 @@ class OutputTimes {
   OutputTimes(double start, double interval, double end) : interval_(interval), last_(end - 1e-9 * interval) {
     index_ = std::floor(start / interval + 1e-9) + 1;
   }
-  [[nodiscard]] bool due(double t) const { return next() <= t && next() < last_; }
+  /// Whether the next is at a time that steps have come to, or was before it. One that comes later by rounding alone is
+  /// at it: what happens at that instant comes after the output, as it does where no rounding parts them.
+  [[nodiscard]] bool due(double t) const { return (next() <= t || same_instant(next(), t)) && next() < last_; }
   [[nodiscard]] double next() const { return index_ * interval_; }
   void pass() { index_ += 1; }
   void remember(Memory& memory) { memory(index_); }

@@ -2,6 +2,8 @@
 /// When controllers take their samples: at one instant where times are apart by rounding alone, and once.
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "acted_run.hpp"
 #include "withy/core/simulation/session.hpp"
 
@@ -49,6 +51,72 @@ loads:
     const LoadNode& seen = run.scene.model->loads()[1];
     EXPECT_NEAR(seen.discrete(std::span(run.summary.final.y)).back(), 0.1 * (meeting - 3), 1e-9)
         << tenths(meeting) << " s";
+  }
+}
+
+/// The row of a table of tenths at one of them.
+const State& row_at(const ActedRun& run, int count) { return run.outputs.at(static_cast<std::size_t>(count)); }
+
+// Rows are multiples of 0.1, 0.30000000000000004 among them; the events' times and the samples are decimals, or
+// multiples of another number.
+TEST(SampleInstants, rows_there_show_what_was_until_then_whichever_rounding_leaves_first) {
+  for (int at = 1; at < 30; ++at) {
+    const ActedRun run(
+        wheel("time: {output: 0.1, end: 3}\ninitial: {hinges: {axle: {rate: [1]}}}\nevents: {stop: {at: " + tenths(at) +
+              ", do: {lock: axle}}}\n"));
+    EXPECT_EQ(run.rate("axle", row_at(run, at)), 1.0) << tenths(at) << " s";
+    EXPECT_EQ(run.rate("axle", row_at(run, at + 1)), 0.0) << tenths(at) << " s";
+  }
+  const ActedRun run(wheel(R"(time: {output: 0.1, end: 3}
+loads: {law: {type: expression, hinge: axle, value: t, sample: 0.3}}
+)"));
+  const LoadNode& law = run.scene.model->loads()[0];
+  for (int at = 3; at < 30; at += 3) {
+    const auto held = [&](int row) { return law.discrete(std::span(row_at(run, row).y)).back(); };
+    EXPECT_NEAR(held(at), 0.1 * (at - 3), 1e-12) << tenths(at) << " s";
+    EXPECT_NEAR(held(at + 1), 0.1 * at, 1e-12) << tenths(at) << " s";
+  }
+}
+
+TEST(SampleInstants, a_resumed_run_gives_the_rows_there_once) {
+  const Made made(wheel(R"(time: {output: 0.1, end: 1}
+initial: {hinges: {axle: {rate: [1]}}}
+loads: {law: {type: expression, hinge: axle, value: t, sample: 0.3}}
+events: {stop: {at: 0.7, do: {lock: axle}}}
+)"));
+  const auto rows = [&](std::size_t save_at, const Checkpoint* resume, std::optional<Checkpoint>& saved) {
+    std::vector<State> all;
+    RunOptions options;
+    options.end = 1;
+    options.output = 0.1;
+    options.resume = resume;
+    std::size_t asked = 0;
+    options.checkpoint_due = [&] { return ++asked == save_at; };
+    options.checkpoint = [&](const Checkpoint& c) {
+      if (!saved) saved = c;  // an interrupted run makes another where it stops
+    };
+    options.interrupted = [&] { return saved.has_value(); };
+    const auto keep = [&](const State& s) {
+      if (!saved) all.push_back(s);
+    };
+    static_cast<void>(
+        simulate(*made.scene.model, *made.equations, *made.scene.integrator, made.scene.initial, options, keep));
+    return all;
+  };
+  std::optional<Checkpoint> none;
+  const std::vector<State> whole = rows(0, nullptr, none);
+  ASSERT_EQ(whole.size(), 11U);
+  for (std::size_t step = 1;; ++step) {
+    std::optional<Checkpoint> saved;
+    std::vector<State> both = rows(step, nullptr, saved);
+    if (!saved) break;
+    const std::vector<State> rest = rows(0, &*saved, none);
+    both.insert(both.end(), rest.begin(), rest.end());
+    ASSERT_EQ(both.size(), whole.size()) << step;
+    for (std::size_t i = 0; i < both.size(); ++i) {
+      EXPECT_EQ(both[i].time, whole[i].time) << step;
+      EXPECT_EQ(both[i].y, whole[i].y) << step;
+    }
   }
 }
 
