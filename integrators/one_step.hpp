@@ -105,6 +105,7 @@ class OneStep : public Stepper, public ClosingStepper {
     if (loops_ == nullptr) return;
     memory(closed_.gap);
     memory(closed_.energy);
+    memory(apart_);
   }
 
   /// The interpolant at fraction theta in (0, 1) of the last accepted step.
@@ -120,6 +121,7 @@ class OneStep : public Stepper, public ClosingStepper {
 
   /// To be called first in a step: sets the limit of stage times and finds the slope at the start where it is unknown.
   StepResult begin(double t_limit) {
+    if (apart_) return {StepResult::Outcome::singular};
     if (t_limit != limit_) latest_ = std::nextafter(limit_ = t_limit, state_.time);
     if (slope_known_) return {};
     const Evaluation e = evaluate(state_.time, next_ = y(), slope_);
@@ -190,6 +192,7 @@ class OneStep : public Stepper, public ClosingStepper {
     const double before = energy(y);
     const Closing closing = loops_->close(y, closing_work_);
     open_ = !closing.closed;
+    apart_next_ = closing.apart;
     closing_ = {closing.gap, energy(y) - before};
   }
 
@@ -204,6 +207,7 @@ class OneStep : public Stepper, public ClosingStepper {
     Values(state_.y.data(), size_) = next_;
     previous_slope_.swap(slope_);
     slope_.swap(next_slope_);
+    apart_ = apart_next_;
     closed_.gap = std::max(closed_.gap, closing_.gap);
     closed_.energy += closing_.energy;
     statistics_.smallest_step = statistics_.accepted == 0 ? h : std::min(statistics_.smallest_step, h);
@@ -266,6 +270,7 @@ class OneStep : public Stepper, public ClosingStepper {
     follows_ = false;
     previous_time_ = state.time;
     previous_ = y();
+    apart_ = false;
   }
 
   [[nodiscard]] double energy(std::span<const double> y) {
@@ -281,6 +286,8 @@ class OneStep : public Stepper, public ClosingStepper {
   std::unique_ptr<Observation> energy_;  ///< where loops are closed
   ClosingRecord closing_, closed_;       ///< of the step being tried, and of all that were accepted
   mutable bool open_ = false;            ///< the end of the step being tried cannot be closed
+  bool apart_next_ = false;              ///< it is closed as Closing::apart
+  bool apart_ = false;                   ///< so is state_, and no step follows
   Eigen::Index size_;
   double limit_ = std::numeric_limits<double>::infinity();   ///< of the step
   double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which it may evaluate

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/simulation/stop.hpp"
 #include "withy/study/fast_course.hpp"
 #include "withy/study/step_limit.hpp"
@@ -97,6 +98,20 @@ const char* const shorter_steps =
     " What to do: take shorter steps (a smaller 'step', or 'rtol' or 'max_step' of an integrator that controls its "
     "error), or one that no vibration limits, as radau.";
 
+/// Where closed loops do not go on; empty of trees, and where the mass matrix is what cannot be solved.
+std::string loop_remedy(const Prepared& prepared, const RunSummary& summary) {
+  if (loops_of(prepared.model()).empty() || summary.final.y.size() != prepared.equations->size()) return {};
+  Work work = prepared.equations->make_work();
+  std::vector<double> slopes(prepared.equations->size());
+  if (!prepared.equations->derivatives(summary.final.time, summary.final.y, slopes, work).ok()) return {};
+  std::string text = " What to do: ";
+  if (!prepared.model().motions().empty())
+    text += "let motions drive no more hinges than the loops leave free, or by laws that agree for the whole run; ";
+  return text +
+         "keep links from coming into one line, by other lengths, another start or a spring or hinge-limit that stops "
+         "them before; or end the run before that (time.end).";
+}
+
 }  // namespace
 
 const Value* least_step(const Scene& scene, double time) {
@@ -135,6 +150,8 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   if (bends && leaves_something_out(terms))
     return " What to do: run it with --formulation quadratic, which leaves out less; if that ends the same way it is "
            "the model and not the formulation.";
+  if (summary.status == RunStatus::singular)
+    if (std::string text = loop_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::singular)
     return " What to do: look for a hinge that moves next to no inertia, or hinges that move the same (withy inspect).";
   if (summary.status == RunStatus::step_underflow)

@@ -185,8 +185,12 @@ void ClosedEquations::move(std::span<double> y, Work& work) const noexcept {
 }
 
 // With the factors of the first state; gaps after a step are so small that each change leaves their square.
-bool ClosedEquations::close_positions(std::span<double> y, Work& work) const noexcept {
-  const double rounding = 1e-15 * paths_.length(), good = 1e-9 * paths_.length();
+//
+// A gap that motions open grows from one step to the next. With one bound for it a state just below would be followed
+// by none, and steps would be halved as long as rounding lets one of them pass. So the states between two bounds are
+// reached, as steps are halved on the way to the second, and are known as the last.
+void ClosedEquations::close_positions(std::span<double> y, Closing& closing, Work& work) const noexcept {
+  const double rounding = 1e-15 * paths_.length(), good = 1e-9 * paths_.length(), last = 2 * good;
   constexpr int most = 12, most_factors = 4;
   const std::span<double> g = gaps_.in(work), change = change_.in(work);
   double left = greatest(g);
@@ -196,14 +200,21 @@ bool ClosedEquations::close_positions(std::span<double> y, Work& work) const noe
     move(y, work);
     paths_.gaps(y, g, of_paths_.in(work));
     const double now = greatest(g);
-    if (!(now < std::numeric_limits<double>::infinity())) return false;
+    if (!(now < std::numeric_limits<double>::infinity())) {
+      left = now;
+      break;
+    }
     const bool slow = now > 0.1 * left;
     left = now;
     if (!slow) continue;
-    if (left <= good) break;  // rounding is all that is left
-    if (++made > most_factors || !factorize(y, work).ok()) return false;
+    if (left <= good || ++made > most_factors) break;
+    if (!factorize(y, work).ok()) {
+      closing.closed = false;
+      return;
+    }
   }
-  return left <= good;
+  closing.closed = left <= last;
+  closing.apart = closing.closed && left > good;
 }
 
 void ClosedEquations::close_speeds(std::span<double> y, Work& work) const noexcept {
@@ -230,7 +241,8 @@ Closing ClosedEquations::close(std::span<double> y, Work& work) const noexcept {
   Closing closing;
   closing.closed = factorize(y, work).ok();
   closing.gap = greatest(gaps_.in(work));
-  closing.closed = closing.closed && std::isfinite(closing.gap) && close_positions(y, work);
+  closing.closed = closing.closed && std::isfinite(closing.gap);
+  if (closing.closed) close_positions(y, closing, work);
   if (closing.closed) close_speeds(y, work);
   return closing;
 }

@@ -17,6 +17,9 @@ namespace withy {
 struct Closing {
   bool closed = true;  ///< false: Newton's method finds no closed state near by, and y is as it was
   double gap = 0;      ///< before it was closed
+  /// Closed but for more than rounding, which no change of free coordinates takes away: motions part the frames. From
+  /// here no step, however small, leads to a closed state.
+  bool apart = false;
 };
 
 /// The equations of one loop.

@@ -223,6 +223,44 @@ TEST(ClosedLoops, ARunStopsWhereLoopsCanMoveOnInTwoWays) {
   EXPECT_LT(summary.final.time, 0.5);
 }
 
+/// A parallelogram whose cranks both have motions, alike in coordinate and rate at first; they part by 0.3 t³.
+std::string parted(const std::string& integrator) {
+  std::string text = four_bar(rigid_coupler, integrator);
+  text = replaced(text, "frames: {pin: {position: [0.8, 0, 0]}}", "frames: {pin: {position: [0.3, 0, 0]}}");
+  text = replaced(text, "offset: {position: [0.9, 0, 0]}", "offset: {position: [1.0, 0, 0]}");
+  text = replaced(text, "loads:\n  torque: {type: hinge-effort, hinge: motor, law: constant, value: 1.5}\n", R"(motions:
+  one: {hinge: motor, type: constant-rate, rate: 1, from: 1.2}
+  other: {hinge: pivot, type: expression, value: 1.2 + t + 0.3 * t^3}
+)");
+  const std::size_t initial = text.find("initial:");
+  return text.replace(initial, std::string::npos, "initial: {guess: {hinges: {elbow: {position: [-1.2]}}}}\n");
+}
+
+// The coupler leaves 0.3 m · 0.3 t³ sin 1.2 open, which is more than rounding, 10⁻⁹ m, from 2.3 ms on.
+TEST(ClosedLoops, MotionsThatPartEndARunWhereTheyDo) {
+  for (const char* integrator : {"{name: dopri5, rtol: 1e-8, atol: 1e-10}", "{name: dop853, rtol: 1e-10, atol: 1e-12}",
+                                 "{name: rk4-adaptive, rtol: 1e-8, atol: 1e-10}",
+                                 "{name: radau, rtol: 1e-8, atol: 1e-10}", "{name: rk4, step: 1e-3}"}) {
+    SCOPED_TRACE(integrator);
+    const Made made(parted(integrator));
+    RunOptions options;
+    options.most_steps = 10'000;
+    const RunSummary summary = run(made, 1.0, {}, options);
+    EXPECT_EQ(summary.status, RunStatus::singular) << summary.message;
+    EXPECT_THAT(summary.message, testing::HasSubstr("motions that leave them no way"));
+    EXPECT_GT(summary.reached, 1e-3);
+    EXPECT_LT(summary.reached, 3e-3);
+    EXPECT_LT(summary.steps.accepted + summary.steps.rejected, 300U);
+  }
+}
+
+TEST(ClosedLoops, DataThatAreRoundedLeaveGapsThatDoNotStopARun) {
+  const Made made(replaced(four_bar(rigid_coupler, "{name: dopri5, rtol: 1e-7, atol: 1e-9}"),
+                           "offset: {position: [0.9, 0, 0]}", "offset: {position: [0.9, 0, 9e-11]}"));
+  const RunSummary summary = run(made, 1.0);
+  EXPECT_EQ(summary.status, RunStatus::completed) << summary.message;
+}
+
 TEST(ClosedLoops, RunsAreResumedBitByBitAndEvaluationsAllocateNothing) {
   const Made made(four_bar(beam_coupler, "{name: dopri5, rtol: 1e-7, atol: 1e-9}"));
   std::optional<Checkpoint> saved;

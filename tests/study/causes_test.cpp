@@ -73,6 +73,45 @@ TEST(Causes, ABladePastTheSpeedThatItsFormulationKnows) {
   for (const char* other : {buckling_words, empty_words, wild_words}) EXPECT_THAT(s.message, Not(HasSubstr(other)));
 }
 
+/// Two cranks of 0.2 m and a coupler of 0.6 m; `rest` says how they move.
+std::string parallelogram(const std::string& rest) {
+  return R"(time: {end: 5}
+bodies:
+  left: {type: rigid, mass: 2, inertia: [0.02, 0.02, 0.03, 0, 0, 0], frames: {end: {position: [0.2, 0, 0]}}}
+  bar: {type: rigid, mass: 1.5, center_of_mass: [0.3, 0, 0], inertia: [0.02, 0.03, 0.05, 0, 0, 0], frames: {end: {position: [0.6, 0, 0]}}}
+  right: {type: rigid, mass: 1.2, inertia: [0.02, 0.03, 0.04, 0, 0, 0], frames: {end: {position: [0.2, 0, 0]}}}
+hinges:
+  near: {type: revolute, axis: [0, 0, 1], parent: world, child: left}
+  knee: {type: revolute, axis: [0, 0, 1], parent: left.end, child: bar}
+  far: {type: revolute, axis: [0, 0, 1], parent: world, child: right, offset: {position: [0.6, 0, 0]}}
+constraints: {loop: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: bar.end, b: right.end}}
+)" + rest;
+}
+
+TEST(Causes, ALoopThatComesIntoOneLine) {
+  const std::string scene = parallelogram(
+      "initial: {hinges: {near: {position: [1.2], rate: [4]}}, guess: {hinges: {knee: {position: [-1.2]}, far: "
+      "{position: [1.2]}}}}\n");
+  const RunSummary s = run_of_text(scene);
+  EXPECT_EQ(s.status, RunStatus::singular);
+  EXPECT_THAT(s.message, HasSubstr("What to do: keep links from coming into one line"));
+  EXPECT_THAT(s.message, Not(HasSubstr("inertia")));
+  // What it advises helps.
+  const double end = number_after(s.message, "lose rank between t = ");
+  SceneValues shorter = SceneValues::parse("format: withy/1\n" + scene, "planted.yaml");
+  EXPECT_EQ(run_of(shorter.set("time.end", Value(end), "the test")).status, RunStatus::completed);
+}
+
+TEST(Causes, MotionsThatPartALoop) {
+  const RunSummary s = run_of_text(parallelogram(R"(motions:
+  one: {type: constant-rate, hinge: near, rate: 1, from: 1.2}
+  other: {type: expression, hinge: far, value: 1.2 + t + 0.3 * t^3}
+initial: {guess: {hinges: {knee: {position: [-1.2]}}}}
+)"));
+  EXPECT_EQ(s.status, RunStatus::singular);
+  EXPECT_THAT(s.message, HasSubstr("What to do: let motions drive no more hinges than the loops leave free"));
+}
+
 TEST(Causes, AMotionThatCeasesToBeFinite) {
   const std::string scene = R"(time: {end: 2}
 bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
