@@ -96,9 +96,12 @@ void Clocks::renew(State& state, Renewal& renewal) {
   state.time = now;
 }
 
-void Clocks::renew(State& state, const LoadSlot& slot, const Crossing& crossing) {
+bool Clocks::renew(State& state, const LoadSlot& slot, const Crossing& crossing) {
+  const auto own = std::span(state.y).subspan(slot.first, slot.count);
+  before_.assign(own.begin(), own.end());
   renewal_.at(state);
   renewal_(state, slot, crossing);
+  return !std::equal(own.begin(), own.end(), before_.begin());
 }
 
 ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start)

@@ -45,8 +45,9 @@ class Clocks {
   void renew(State& state) { renew(state, renewal_); }
   /// The same, of a state of other equations of the model.
   void renew(State& state, Renewal& renewal);
-  /// Renews the states of one load at the zero of a switching function of its own.
-  void renew(State& state, const LoadSlot& slot, const Crossing& crossing);
+  /// Renews the states of one load at the zero of a switching function of its own. \returns whether it has switched: a
+  /// load with hysteresis passes levels that mean nothing where it stands.
+  bool renew(State& state, const LoadSlot& slot, const Crossing& crossing);
   /// As those of Renewal.
   [[nodiscard]] std::string failure(const State& state) const { return renewal_.failure(state); }
   [[nodiscard]] std::string refusal(const State& state) const { return renewal_.refusal(state); }
@@ -64,6 +65,7 @@ class Clocks {
   const Model& model_;
   std::vector<Clock> clocks_;
   Renewal renewal_;
+  std::vector<double> before_;  ///< states of a load that may switch
 };
 
 /// Watches functions for zeros within accepted steps.

@@ -103,8 +103,7 @@ bool Stepping::leap(const std::vector<std::size_t>& acted) {
   bool stops = false;
   for (const Zero& zero : handled_) {
     if (const auto load = zeros_.switching(zero.function)) {
-      clocks_.renew(sample_, load->first, {load->second, zero.direction});
-      observer_->switched();
+      if (clocks_.renew(sample_, load->first, {load->second, zero.direction})) observer_->switched();
     } else if (const std::size_t event = zeros_.index(zero); !actions_->acts(event)) {
       note(zero);
       stops = stops || zeros_.event(zero.function).stops;
@@ -251,8 +250,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
     Zero& zero = handled_[i];
     zero.time = std::min(zero.time, sample_.time);
     if (const auto load = zeros_.switching(zero.function)) {
-      clocks_.renew(sample_, load->first, {load->second, zero.direction});
-      observer_->switched();
+      if (clocks_.renew(sample_, load->first, {load->second, zero.direction})) observer_->switched();
     } else if (actions_ != nullptr && actions_->acts(zeros_.index(zero))) {
       happened_.push_back(zeros_.index(zero));
     } else {

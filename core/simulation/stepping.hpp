@@ -47,7 +47,7 @@ class SteppingObserver {
   virtual bool after_step(const Stepper& /*stepper*/, bool /*outputs*/) { return true; }
   /// Zeros of an event's function have been passed at this time. Each is told once, in the order of their times.
   virtual void passed(const EventTime& /*event*/) {}
-  /// A load has switched at the zero of a function of its own.
+  /// A load has switched at the zero of a function of its own: its discrete states have changed.
   virtual void switched() {}
   /// At the time of a discontinuity of loads or of SteppingOptions::hand_overs, before the stepper begins anew.
   virtual void landed(const State& /*state*/) {}
