@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/switched_load.hpp"
 #include "withy/scene/event_triggers.hpp"
 #include "withy/scene/grammar.hpp"
@@ -247,8 +248,21 @@ void SceneEvents::add_load_actions(const Model& model, const std::string& name, 
   }
 }
 
+/// Integrators would not see the loops of a tree whose hinges lock, and let them open.
+void SceneEvents::refuse_in_loops(const Model& model, const Value& asked) const {
+  const auto loops = loops_of(model);
+  if (loops.empty()) return;
+  for (const char* key : {"lock", "unlock", "release"})
+    for (const Value& item : items_of(asked, key))
+      checker_.diagnostics().error(
+          item.place(), fmt::format("'{}' is for trees, and this scene closes loops (constraints.{}); there events "
+                                    "change loads or end the run",
+                                    key, loops.front()->name()));
+}
+
 void SceneEvents::add_actions(const Model& model, const std::string& name, const Value& asked,
                               ActingEvent& event) const {
+  refuse_in_loops(model, asked);
   add_hinge_actions(model, asked, "unlock", Kind::unlock, event);
   add_releases(model, asked, event);
   add_hinge_actions(model, asked, "lock", Kind::lock, event);

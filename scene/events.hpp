@@ -35,6 +35,7 @@ class SceneEvents {
   [[nodiscard]] bool acts(const std::string& name, const Value& event) const;
   [[nodiscard]] bool measures(const std::string& event, const Watched& number) const;
   void add_actions(const Model& model, const std::string& name, const Value& asked, ActingEvent& event) const;
+  void refuse_in_loops(const Model& model, const Value& asked) const;
   void add_hinge_actions(const Model& model, const Value& asked, const char* key, EventAction::Kind kind,
                          ActingEvent& event) const;
   void add_load_actions(const Model& model, const std::string& name, const Value& asked, ActingEvent& event) const;

@@ -229,8 +229,25 @@ TEST(ClosedLoops, WhatKnowsTreesAloneIsRefused) {
         ChangingEquations(rungs, {{0, 0, 1}});
       },
       testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("loops are closed")));
-  EXPECT_THAT(message(good + "events:\n  hold: {at: 0.2, do: {lock: motor}}\n"),
-              testing::HasSubstr("events lock or unlock hinges knows nothing of closed loops"));
+}
+
+TEST(ClosedLoops, EventsThatChangeTheTreeAreRefusedWhereTheyStand) {
+  std::string text = replaced(four_bar(beam_coupler, "dopri5"), "hinges:\n  motor",
+                              "  load: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}\nhinges:\n  motor");
+  text = replaced(text, "constraints:", "  grip: {type: weld, parent: rocker.pin, child: load}\nconstraints:");
+  const std::string said = message(text + R"(events:
+  hold: {at: 0.2, do: {lock: [motor, pivot]}}
+  free: {at: 0.3, do: {unlock: motor}}
+  drop: {at: 0.4, do: {release: load}}
+  calm: {at: 0.5, do: {switch_off: torque}}
+)");
+  for (const char* part : {"/events/hold/do/lock", "/events/free/do/unlock", "/events/drop/do/release",
+                           "'release' is for trees, and this scene closes loops (constraints.loop)"})
+    EXPECT_THAT(said, testing::HasSubstr(part));
+  EXPECT_THAT(said, testing::Not(testing::HasSubstr("/formulation")));
+  EXPECT_THAT(said, testing::Not(testing::HasSubstr("/events/calm")));
+  const Made made(text + "events: {calm: {at: 0.5, do: {switch_off: torque}}}\n");
+  EXPECT_EQ(run(made, 0.6).status, RunStatus::completed);
 }
 
 }  // namespace
