@@ -216,6 +216,9 @@ class Run final : public SteppingObserver {
     if (watch_ != nullptr) watch_->remember(memory);
     memory(emitted_);
     halves_.remember(memory);
+    double spent = summary_.cpu_seconds + thread_cpu_seconds() - cpu_began_;
+    memory(spent);
+    if (memory.reading()) summary_.cpu_seconds = spent;
     memory(summary_.switchings);
     std::size_t count = summary_.events.size();
     memory(count);
@@ -254,6 +257,7 @@ class Run final : public SteppingObserver {
   Stop stop_;           ///< why this observer has ended the stepping
   std::vector<std::string> stopped_by_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  double cpu_began_ = thread_cpu_seconds();
 };
 
 /// The last state that can be trusted takes the place of the last one.
@@ -349,7 +353,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   }
   if (stop.status != RunStatus::completed && stop.status != RunStatus::interrupted) go_back(run.monitor(), summary);
   summary.status = stop.status;
-  summary.cpu_seconds = thread_cpu_seconds() - began;
+  summary.cpu_seconds += thread_cpu_seconds() - began;
   return summary;
 }
 

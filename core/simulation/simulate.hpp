@@ -126,7 +126,7 @@ struct RunSummary {
   double fastest_mode = 0;  ///< greatest √ of the eigenvalues of M⁻¹K there [rad/s]; 0 where they were not looked at
   Validity validity;
   StepStatistics steps;
-  double cpu_seconds = 0;
+  double cpu_seconds = 0;  ///< of this thread; of a run that was resumed with those before its checkpoint
 };
 
 /// Integrates from `initial`; `output` receives the state there, at every multiple of the output interval (interpolated

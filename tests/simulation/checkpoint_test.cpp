@@ -5,6 +5,7 @@
 #include <set>
 
 #include "made_scene.hpp"
+#include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/simulate.hpp"
 
 namespace withy {
@@ -148,6 +149,37 @@ initial: {hinges: {axle: {rate: [0.5]}, root: {rate: [0.8]}}}
 time: {end: 4, output: 0.05}
 integrator: {name: dopri5, rtol: 1.0e-6, atol: 1.0e-8}
 )");
+}
+
+/// From its first output to the checkpoint, which is made where little is left of the run.
+TEST(Checkpoints, restore_the_processor_time_that_was_spent_before) {
+  const test::Made made(R"(format: withy/1
+bodies: {boom: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: 3, modes: 4}}}
+hinges: {root: {type: revolute, axis: [0, 0, 1], parent: world, child: boom}}
+initial: {hinges: {root: {rate: [0.8]}}}
+time: {end: 1, output: 1}
+integrator: {name: rk4, step: 1.0e-4}
+)");
+  double first = 0, saved_at = 0;
+  std::size_t asked = 0;
+  std::optional<Checkpoint> saved;
+  RunOptions options;
+  options.end = 1;
+  options.output = 1;
+  options.checkpoint_due = [&] {
+    if (++asked != 9900) return false;
+    saved_at = thread_cpu_seconds();
+    return true;
+  };
+  options.checkpoint = [&](const Checkpoint& c) { saved = c; };
+  const auto run = [&] {
+    return simulate(*made.scene.model, *made.equations, *made.scene.integrator, made.scene.initial, options,
+                    [&](const State&) { first = first > 0 ? first : thread_cpu_seconds(); });
+  };
+  static_cast<void>(run());
+  ASSERT_TRUE(saved);
+  options.resume = &*saved;
+  EXPECT_GT(run().cpu_seconds, saved_at - first);
 }
 
 }  // namespace
