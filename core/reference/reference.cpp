@@ -122,7 +122,8 @@ void ReferenceDynamics::check(const Model& model, Terms terms) {
     if (is_exact(model, b, terms) && node.body->rod() == nullptr)
       throw std::invalid_argument(
           "body '" + node.name +
-          "' has no exact kinematics: a body offers it that is a rod clamped at its root, without extension and shear; "
+          "' has no exact kinematics: a body offers it that is a rod clamped at its root, without extension, shear "
+          "and rotary inertia in bending; "
           "give it a formulation of its own");
   }
 }

@@ -163,6 +163,23 @@ TEST(Exact, names_a_body_that_does_not_offer_it) {
   EXPECT_NE(exact->compile(model(Terms{StrainOrder::quadratic, Truncation::none})), nullptr);
 }
 
+/// The reason is one that the body has.
+TEST(Exact, says_what_a_beam_has_that_a_rod_has_not) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const Scene beam = parse_scene(
+      "format: withy/1\ntime: {end: 1}\nbodies: {b: {type: beam, length: 2, mass_per_length: 1.5, bending_y: "
+      "{stiffness: 40, rotary_inertia: 0.01}}}\nhinges: {r: {type: weld, parent: world, child: b}}\n",
+      "beam", registry, {"exact", "", {}});
+  try {
+    beam.formulation->compile(beam.model);
+    ADD_FAILURE() << "compiled";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("without extension, shear and rotary inertia in bending"), std::string::npos)
+        << e.what();
+  }
+}
+
 /// A body's own formulation: ruthless terms for one body in an untruncated tree; strict and untruncated do not mix.
 TEST(OwnTerms, of_a_body_are_taken_and_impossible_mixtures_refused) {
   Registry registry;
