@@ -90,6 +90,22 @@ void look_at_bodies(const Prepared& prepared, std::vector<Remark>& all) {
   }
 }
 
+/// Bodies of modes that leave an edge or some nodes at the root at rest, held elsewhere: these stay at rest against
+/// each other. A section of a slender body is one with its root.
+void look_at_held_places(const Prepared& prepared, std::vector<Remark>& all) {
+  for (const HingeNode& hinge : prepared.model().hinges()) {
+    const BodyNode& node = prepared.model().bodies()[static_cast<std::size_t>(hinge.child)];
+    if (node.body->shape().modes() == 0 || node.body->cut(0)) continue;
+    const Frame& held = node.frames[static_cast<std::size_t>(hinge.child_frame)];
+    const PointExpansion root = *node.body->station(std::string("root"));
+    if (held.section.X == root.X || (held.section.phi.isZero(0) && held.section.psi.isZero(0))) continue;
+    all.push_back({place_of(prepared.scene, "hinges", hinge.name),
+                   fmt::format("holds '{}' at '{}', where its modes move; they are those of the body held at its root "
+                               "and leave all that is clamped there undeformed: hold it at its root",
+                               node.name, held.name)});
+  }
+}
+
 /// The inertia [kg m², kg] that an effort on each speed accelerates where all else is free: 1 / (M⁻¹)_ii. 0 on speeds
 /// that motions prescribe, and everywhere where M cannot be inverted.
 std::vector<double> driven_inertia(const Prepared& prepared) {
@@ -262,6 +278,7 @@ void look_at_start(const Prepared& prepared, std::vector<Remark>& all) {
 std::vector<Remark> implausible(const Prepared& prepared, Registry& registry) {
   std::vector<Remark> all;
   look_at_bodies(prepared, all);
+  look_at_held_places(prepared, all);
   look_at_tip_moments(prepared, registry, all);
   look_at_varying_sections(prepared, registry, all);
   look_at_servos(prepared, all);

@@ -146,6 +146,25 @@ loads:
 
 // d/J = 1500/1e-9 = 1.5e12/s: dopri5, stable to 1.7 over that of a vibration, would need 9e11 steps, of a motion that
 // dies out half as many.
+/// Modes of a plate leave its edge at the root straight, those of a beam one section.
+TEST(Causes, APlateThatIsNotHeldAtItsRoot) {
+  const auto remarks = [](const std::string& body, const std::string& child) {
+    const SceneValues values =
+        SceneValues::parse("format: withy/1\ntime: {end: 1}\nbodies: {p: " + body +
+                               "}\nhinges:\n  w: {type: weld, parent: world, child: " + child + "}\n",
+                           "planted.yaml");
+    return implausible(prepare(values, plugins()), plugins());
+  };
+  const std::string plate = "{type: plate, length: 1, width: 1, mass_per_area: 1, stiffness: 1}";
+  const std::vector<Remark> found = remarks(plate, "p.tip");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].place.path, "/hinges/w");
+  EXPECT_THAT(found[0].text, HasSubstr("holds 'p' at 'tip', where its modes move"));
+  EXPECT_THAT(remarks(plate, "p"), testing::IsEmpty());
+  EXPECT_THAT(remarks("{type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 1}}", "p.tip"),
+              testing::IsEmpty());
+}
+
 TEST(Causes, ADampedHingeThatMovesNextToNothing) {
   const std::string scene = R"(time: {end: 1}
 bodies:
