@@ -1,7 +1,5 @@
 #include "withy/core/simulation/motion_gap.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,12 +42,13 @@ std::string MotionGap::text() const {
   }
   if (worst == nullptr) return {};
   const HingeNode& hinge = model_.hinges()[static_cast<std::size_t>(worst->motion->hinge)];
-  return fmt::format(
-      "Hinge '{}' is off its motion '{}' by {} {} at t = {} s, of {} that the motion goes: steps have passed over what "
-      "its law does in between. Limit them (integrator.max_step, or a smaller step); where the law has a kink, as of "
-      "min, max or abs, give it as a table or in parts.",
-      hinge.name, worst->motion->name, brief(worst->gap), hinge_rates(*hinge.hinge).front().angular ? "rad" : "m",
-      brief(worst->time), brief(worst->most - worst->least));
+  const std::string unit = hinge_rates(*hinge.hinge).front().angular ? " rad" : " m";
+  return "Hinge '" + hinge.name + "' is off its motion '" + worst->motion->name + "' by " + brief(worst->gap) + unit +
+         " at t = " + brief(worst->time) + " s, of " + brief(worst->most - worst->least) + unit +
+         " that the motion goes: steps have passed over what its law does in between. Limit them "
+         "(integrator.max_step, or a smaller step); where the law has a kink, as of min, max or abs, give it as a "
+         "table "
+         "or in parts.";
 }
 
 }  // namespace withy
