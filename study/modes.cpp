@@ -147,8 +147,7 @@ std::string dominating(const ModesAt& at, const Mode& mode) {
 }
 
 double resolved_growth(const ModesAt& at, const Mode& mode) {
-  constexpr double resolution = 1e-10;
-  return std::abs(mode.growth()) > resolution * greatest_eigenvalue(at) ? mode.growth() : 0.0;
+  return std::abs(mode.growth()) > mode.resolution(greatest_eigenvalue(at)) ? mode.growth() : 0.0;
 }
 
 bool unstable(const ModesAt& at, const Mode& mode) { return !mode.rigid && resolved_growth(at, mode) > 0; }

@@ -85,7 +85,7 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
 
 /// Name of the coordinate that dominates a mode, as "link1.bending_y[1]".
 std::string dominating(const ModesAt& at, const Mode& mode);
-/// A growth without what rounding leaves of it: eigenvalues are found to about 1e-10 of the greatest [1/s].
+/// A growth without what rounding leaves of it, as Mode::resolution tells [1/s].
 double resolved_growth(const ModesAt& at, const Mode& mode);
 /// Whether it grows, beyond that.
 bool unstable(const ModesAt& at, const Mode& mode);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "withy/core/analysis/linear_system.hpp"
+#include "withy/core/analysis/unheld.hpp"
 
 namespace withy {
 namespace {
@@ -42,29 +43,6 @@ std::vector<CoupledRoot> roots_beside_zeros(const Eigen::MatrixXd& A, std::size_
   roots.erase(roots.begin(), roots.begin() + static_cast<std::ptrdiff_t>(zeros));
   return roots;
 }
-
-/// Columns that span the same, such that each has a row, that of its greatest element, in which all others are zero.
-struct Apart {
-  Eigen::MatrixXd columns;
-  std::vector<Eigen::Index> rows;
-
-  /// \param others whose rows are to be zero too; null: none
-  explicit Apart(Eigen::MatrixXd given, const Apart* others = nullptr) : columns(std::move(given)) {
-    if (others != nullptr) {
-      for (std::size_t k = 0; k < others->rows.size(); ++k)
-        columns -= (others->columns.col(static_cast<Eigen::Index>(k)) * columns.row(others->rows[k])).eval();
-    }
-    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-      Eigen::Index row = 0, column = 0;
-      columns.rightCols(columns.cols() - k).cwiseAbs().maxCoeff(&row, &column);
-      if (column > 0) columns.col(k).swap(columns.col(k + column));
-      columns.col(k) /= double(columns(row, k));
-      for (Eigen::Index j = 0; j < columns.cols(); ++j)
-        if (j != k) columns.col(j) -= double(columns(row, j)) * columns.col(k);
-      rows.push_back(row);
-    }
-  }
-};
 
 /// What nothing holds: directions that A takes to nothing, to what derivatives are known to at the worst. Those that A
 /// itself leads to are ends of chains, two zeros each: they go on at any rate.

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "withy/core/analysis/coupled_modes.hpp"
+#include "withy/core/analysis/eigenpairs.hpp"
 #include "withy/core/analysis/linear_system.hpp"
+#include "withy/core/analysis/unheld.hpp"
 
 namespace withy {
 namespace {
@@ -34,6 +36,12 @@ struct Scaled {
   }
 };
 
+/// In scaled coordinates; none where nobody asked for it.
+Eigen::VectorXd in_play_of(const Tangents& t, const std::vector<Eigen::Index>& free, const Scaled& s) {
+  if (t.in_play.size() == 0) return {};
+  return t.in_play(free).cwiseProduct(s.scale.cwiseAbs2());
+}
+
 Eigen::MatrixXd solve_mass(const Eigen::MatrixXd& M, const Eigen::MatrixXd& right) {
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
   if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
@@ -45,55 +53,121 @@ struct Root {
   Eigen::VectorXcd shape;  ///< scaled coordinates
 };
 
+/// Constant displacements, u = −C δ, that ask for no acceleration.
+struct Neutral {
+  Eigen::MatrixXd directions;  ///< columns
+  bool simple = true;          ///< at rest: each has the two zeros of a motion at any rate, and none has more
+
+  Neutral(const Scaled& s, const Eigen::VectorXd& in_play) {
+    const GradedMatrix stiffness(s.K - s.G * s.C, in_play);
+    directions = stiffness.unheld();
+    if (directions.cols() == 0) return;
+    directions = Apart(directions).columns;
+    // A force on one of these moves it: else it moves another without end.
+    constexpr double moves = 1e-9;
+    const Apart pushed(stiffness.unreached());
+    const Eigen::FullPivLU<Eigen::MatrixXd> masses(pushed.columns.transpose() * s.M * directions);
+    const Eigen::VectorXd pivots = masses.matrixLU().diagonal().cwiseAbs();
+    simple = pivots.minCoeff() > moves * pivots.maxCoeff();
+  }
+};
+
+/// K that takes the directions to nothing but for G C, to the last digit where they are single coordinates.
+Eigen::MatrixXd cleared(const Scaled& s, const Neutral& neutral) {
+  Eigen::MatrixXd K = s.K;
+  if (neutral.directions.cols() == 0) return K;
+  K(Eigen::all, Apart(neutral.directions).rows) -= (s.K - s.G * s.C) * neutral.directions;
+  return K;
+}
+
 /// λ² of M λ² + K, where nothing depends on speeds: keeps pairs exact and zeros simple.
-std::vector<Root> roots_at_rest(const Scaled& s) {
-  const Eigen::MatrixXd A = -solve_mass(s.M, s.K);
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
-  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+std::vector<Root> roots_at_rest(const Scaled& s, const Neutral& neutral) {
+  const Quotient held(-solve_mass(s.M, cleared(s, neutral)), neutral.directions);
+  const Eigenpairs found = eigenpairs(held.matrix());
+  const Eigen::MatrixXcd shapes = held.vectors(found.values, found.vectors);
   std::vector<Root> roots;
-  for (Eigen::Index i = 0; i < s.M.rows(); ++i) {
-    const Complex square = solver.eigenvalues()[i];
+  for (const auto& direction : neutral.directions.colwise()) roots.insert(roots.end(), 2, {0, direction});
+  for (Eigen::Index i = 0; i < found.values.size(); ++i) {
+    const Complex square = found.values[i];
     const Complex value = square.imag() == 0 ? (square.real() < 0 ? Complex(0, std::sqrt(-square.real()))
                                                                   : Complex(std::sqrt(square.real()), 0))
                                              : std::sqrt(square);
-    roots.push_back({value, solver.eigenvectors().col(i)});
-    roots.push_back({-value, solver.eigenvectors().col(i)});
+    roots.push_back({value, shapes.col(i)});
+    roots.push_back({-value, shapes.col(i)});
   }
   return roots;
 }
 
-/// \param zeros becomes the number of zeros: motions that nothing holds are chains of them where there is spin
-std::vector<Root> roots_in_motion(const Scaled& s, std::size_t& zeros) {
+/// A matrix freed of its zeros link by link: motions that nothing holds are chains of them.
+class Unchained {
+ public:
+  /// \param first columns that A takes to nothing; where there are none it has no zeros
+  Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first) : matrix_(A), share_(rank_share(A)) {
+    for (Eigen::MatrixXd next = first; next.cols() > 0; next = unheld()) {
+      for (Eigen::Index k = 0; k < next.cols(); ++k) {
+        Eigen::MatrixXd direction = next.col(k);
+        for (auto link = links_.rbegin(); link != links_.rend(); ++link) direction = link->lifted(direction);
+        directions_.emplace_back(direction);
+      }
+      links_.emplace_back(matrix_, next);
+      matrix_ = links_.back().matrix();
+    }
+  }
+  /// Vectors of A, one a zero.
+  [[nodiscard]] const std::vector<Eigen::VectorXd>& directions() const { return directions_; }
+  [[nodiscard]] Eigenpairs others() const {
+    Eigenpairs found = eigenpairs(matrix_);
+    for (auto link = links_.rbegin(); link != links_.rend(); ++link)
+      found.vectors = link->vectors(found.values, found.vectors);
+    return found;
+  }
+
+ private:
+  static double rank_share(const Eigen::MatrixXd& A) {
+    return 1e-13 * static_cast<double>(A.rows()) * A.colwise().norm().maxCoeff();
+  }
+  /// What is left takes these to nothing, but for rounding of what A was.
+  [[nodiscard]] Eigen::MatrixXd unheld() const {
+    const Eigen::Index n = matrix_.rows();
+    const double largest = n > 0 ? matrix_.colwise().norm().maxCoeff() : 0.0;
+    if (!(largest > 0)) return Eigen::MatrixXd::Identity(n, n);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> rows(n, n);
+    rows.setThreshold(share_ / largest);
+    rows.compute(matrix_);
+    const Eigen::MatrixXd Z = rows.matrixZ();
+    return rows.colsPermutation() * Z.bottomRows(n - rows.rank()).transpose();
+  }
+
+  Eigen::MatrixXd matrix_;
+  double share_;
+  std::vector<Quotient> links_;
+  std::vector<Eigen::VectorXd> directions_;
+};
+
+std::vector<Root> roots_in_motion(const Scaled& s, const Neutral& neutral) {
   const Eigen::Index n = s.M.rows();
   Eigen::MatrixXd A(2 * n, 2 * n);
-  A << s.C, Eigen::MatrixXd::Identity(n, n), -solve_mass(s.M, s.K), -solve_mass(s.M, s.G);
-  const double unit = unit_of_rates(A.bottomLeftCorner(n, n), A.bottomRightCorner(n, n));
-  A.topRightCorner(n, n) *= unit;
-  A.bottomLeftCorner(n, n) /= unit;
-  zeros = zeros_of(A);
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
-  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  A << s.C, Eigen::MatrixXd::Identity(n, n), -solve_mass(s.M, cleared(s, neutral)), -solve_mass(s.M, s.G);
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(2 * n);
+  units.tail(n).array() = unit_of_rates(A.bottomLeftCorner(n, n), A.bottomRightCorner(n, n));
+  A = (units.cwiseInverse().asDiagonal() * A * units.asDiagonal()).eval();
+  const Eigen::VectorXd balance = balance_of_states(A);
+  A = (balance.cwiseInverse().asDiagonal() * A * balance.asDiagonal()).eval();
+  units = units.cwiseProduct(balance).eval();
+  Eigen::MatrixXd still(2 * n, neutral.directions.cols());
+  still << neutral.directions, -s.C * neutral.directions;
+  const Unchained unchained(A, units.cwiseInverse().asDiagonal() * still);
   std::vector<Root> roots;
-  for (Eigen::Index i = 0; i < 2 * n; ++i)
-    roots.push_back({solver.eigenvalues()[i], solver.eigenvectors().col(i).head(n)});
+  for (const Eigen::VectorXd& direction : unchained.directions()) {
+    // Of a motion at a constant rate that rate is the shape: the displacements of a chain's later links are any.
+    const Eigen::VectorXd z = units.cwiseProduct(direction);
+    const bool moves = static_cast<Eigen::Index>(roots.size()) >= neutral.directions.cols() && !z.tail(n).isZero(0);
+    roots.push_back({0, (moves ? z.tail(n) : z.head(n)).cast<Complex>()});
+  }
+  const Eigenpairs found = unchained.others();
+  for (Eigen::Index i = 0; i < found.values.size(); ++i)
+    roots.push_back({found.values[i], units.head(n).cast<Complex>().cwiseProduct(found.vectors.col(i).head(n))});
   return roots;
-}
-
-/// Number of directions that no stiffness holds.
-Eigen::Index nullity(const Eigen::MatrixXd& K) {
-  if (K.rows() == 0) return 0;
-  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(K).singularValues();
-  return (values.array() <= 1e-11 * std::max(values[0], 1e-300)).count();
-}
-
-/// Sets eigenvalues to zero that are so but for rounding: so many, of those that are this share of the greatest.
-void clear_zeros(std::vector<Root>& roots, std::size_t zeros, double share) {
-  double greatest = 0;
-  for (const Root& r : roots) greatest = std::max(greatest, std::abs(r.value));
-  std::sort(roots.begin(), roots.end(),
-            [](const Root& a, const Root& b) { return std::abs(a.value) < std::abs(b.value); });
-  for (std::size_t i = 0; i < roots.size() && i < zeros; ++i)
-    if (std::abs(roots[i].value) <= share * greatest) roots[i].value = 0;
 }
 
 Mode mode_of(const Root& first, const Root& partner, const Scaled& s, const std::vector<Eigen::Index>& free,
@@ -131,12 +205,8 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
   if (free.empty()) return {};
   const Scaled s(tangents, free);
   const bool at_rest = s.G.isZero(0) && s.C.isZero(0);
-  std::size_t zeros = 0;
-  std::vector<Root> roots = at_rest ? roots_at_rest(s) : roots_in_motion(s, zeros);
-  // A chain of zeros is found to a root of rounding.
-  clear_zeros(roots, zeros, 1e-3);
-  // Constant displacements, u = −C δ, that ask for no acceleration, to what differences leave of it: two zeros each.
-  clear_zeros(roots, 2 * static_cast<std::size_t>(nullity(s.K - s.G * s.C)), 1e-6);
+  const Neutral neutral(s, in_play_of(tangents, free, s));
+  const std::vector<Root> roots = at_rest && neutral.simple ? roots_at_rest(s, neutral) : roots_in_motion(s, neutral);
 
   std::vector<Mode> modes;
   std::vector<const Root*> real;
@@ -152,7 +222,8 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
     const Root* first = real.front();
     real.erase(real.begin());
     const auto likeness = [&](const Root* r) {
-      return (r->value == 0.0) == (first->value == 0.0) ? modal_assurance(first->shape, r->shape, even) : -1.0;
+      const double alike = modal_assurance(first->shape, r->shape, even);
+      return (r->value == 0.0) == (first->value == 0.0) ? alike : alike - 2;
     };
     const auto other = std::max_element(real.begin(), real.end(),
                                         [&](const Root* a, const Root* b) { return likeness(a) < likeness(b); });
@@ -178,7 +249,7 @@ void sort_modes(std::vector<Mode>& modes) {
   for (const Mode& m : modes) greatest = std::max({greatest, std::abs(m.eigenvalue), std::abs(m.partner)});
   const auto key = [&](const Mode& m) {
     const double modulus = std::min(std::abs(m.eigenvalue), std::abs(m.partner));
-    return std::pair(m.growth() <= 1e-10 * greatest, modulus);
+    return std::pair(m.growth() <= m.resolution(greatest), modulus);
   };
   std::stable_sort(modes.begin(), modes.end(), [&](const Mode& a, const Mode& b) { return key(a) < key(b); });
 }

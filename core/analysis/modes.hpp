@@ -3,6 +3,7 @@
 /// symmetric in general (damping, spin, strict formulations).
 #pragma once
 
+#include <algorithm>
 #include <complex>
 #include <vector>
 
@@ -32,6 +33,11 @@ struct Mode {
   [[nodiscard]] double squared_frequency() const { return (eigenvalue * partner).real(); }
   [[nodiscard]] double frequency() const { return std::abs(eigenvalue); }  ///< undamped natural frequency [rad/s]
   [[nodiscard]] double growth() const { return eigenvalue.real(); }        ///< [1/s]
+  /// What rounding may leave of the growth [1/s], `greatest` being the greatest |λ| of all modes: 1e-10 of that, and of
+  /// one that is far slower, which is found with digits of its own, 1e-6 of its own |λ|.
+  [[nodiscard]] double resolution(double greatest) const {
+    return std::min(1e-10 * greatest, 1e-6 * std::abs(eigenvalue));
+  }
   /// −Re λ/|λ|; meaningless for a rigid mode.
   [[nodiscard]] double damping_ratio() const { return -eigenvalue.real() / std::abs(eigenvalue); }
 };

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "withy/core/analysis/relaxation.hpp"
+#include "withy/core/analysis/unheld.hpp"
 #include "withy/core/analysis/unreached.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 
@@ -20,11 +21,6 @@ constexpr double converged_step = 1e-11;
 constexpr double typed_share = 1e-9;
 /// Who starts as near as this [rad] to a balance means that one, though it may not last, as of an upright pendulum.
 constexpr double near = 0.5;
-/// Below this share of the largest singular value the stiffness counts as singular.
-constexpr double singular_share = 1e-12;
-
-using RankSolver = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
-
 double greatest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; }
 
 /// What balances at a steady state: forces on the free speeds, and rates of the continuous states of loads.
@@ -73,6 +69,10 @@ class ScaledProblem {
     return J;
   }
 
+  /// What the diagonal of K is known against, in these units.
+  [[nodiscard]] Eigen::VectorXd floor(const Eigen::VectorXd& in_play, const std::vector<Eigen::Index>& free) const {
+    return of_free_.cwiseAbs2().cwiseProduct(in_play(free));
+  }
   [[nodiscard]] Eigen::VectorXd right(const Imbalance& left, const std::vector<Eigen::Index>& free) const {
     Eigen::VectorXd all(of_free_.size() + of_rates_.size());
     all << of_free_.cwiseProduct(left.forces(free)), of_rates_.cwiseProduct(left.rates);
@@ -113,7 +113,8 @@ class Newton {
         n_(static_cast<Eigen::Index>(held.size())),
         state_(start),
         rest_(dynamics.steady_accelerations(start.time)),
-        scaled_(dynamics.mass_diagonal(state_.time, state_.y)(free_)) {}
+        mass_(dynamics.mass_diagonal(state_.time, state_.y)),
+        scaled_(mass_(free_)) {}
 
   SteadyState solve() {
     SteadyState result;
@@ -166,14 +167,15 @@ class Newton {
     matrix_ = scaled_.matrix(t, free_);
     singular_ = false;
     if (!matrix_.allFinite()) return false;
-    solver_.setThreshold(singular_share);
-    solver_.compute(matrix_);
-    singular_ = solver_.rank() < matrix_.rows();
+    const Eigen::VectorXd in_play = dynamics_.stiffness_in_play(state_.time, state_.y, rest_, t.diagonal_terms, mass_);
+    if (!in_play.allFinite()) return false;
+    solver_ = GradedMatrix(matrix_, scaled_.floor(in_play, free_));
+    singular_ = solver_.missing() > 0;
     return true;
   }
   /// A unit vector of displacements that nothing holds; empty where a state of a load is all that is free.
   [[nodiscard]] Eigen::VectorXd neutral(const Imbalance& left) const {
-    const Eigen::VectorXd direction = unheld(matrix_, solver_.rank(), scaled_.right(left, free_));
+    const Eigen::VectorXd direction = along_unheld(solver_.unheld(), scaled_.right(left, free_));
     const Eigen::VectorXd moved = scaled_.change(direction, free_, n_).moved;
     return moved.norm() > 0 ? Eigen::VectorXd(moved / moved.norm()) : Eigen::VectorXd();
   }
@@ -196,7 +198,7 @@ class Newton {
     // Of rates that depend on nothing none is small.
     in_play.tail(left.rates.size()) =
         matrix_.bottomRows(left.rates.size()).cwiseAbs() * scaled_.sizes(size(), states().cwiseAbs());
-    return reaches(matrix_, solver_.rank(), scaled, in_play);
+    return reaches(solver_.unreached(), scaled, in_play);
   }
   /// The part of the step that is taken: 0 where none makes the next one smaller.
   double advance(const Change& step) {
@@ -230,10 +232,10 @@ class Newton {
   std::vector<Eigen::Index> free_;
   Eigen::Index n_;
   State state_;
-  Eigen::VectorXd rest_;
+  Eigen::VectorXd rest_, mass_;
   ScaledProblem scaled_;
   Eigen::MatrixXd matrix_;
-  RankSolver solver_;
+  GradedMatrix solver_;
   bool singular_ = false;
 };
 

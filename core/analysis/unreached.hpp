@@ -3,34 +3,45 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
 
 namespace withy {
 
-/// Whether what is left over where no column of A leads, a matrix of that rank, is small against what is in play there.
+/// Whether what is left over where no column of A leads is small against what is in play there.
+/// \param nowhere independent columns L of Lᵀ A = 0
 /// \param in_play sizes of the terms that `left` is the sum of, not less than zero; zero admits nothing but zero
-inline bool reaches(const Eigen::MatrixXd& A, Eigen::Index rank, const Eigen::VectorXd& left,
-                    const Eigen::VectorXd& in_play) {
+inline bool reaches(const Eigen::MatrixXd& nowhere, const Eigen::VectorXd& left, const Eigen::VectorXd& in_play) {
   /// Data are seldom typed more exactly.
   constexpr double share = 1e-9;
   if (!left.allFinite() || !in_play.allFinite()) return false;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullU);
-  for (Eigen::Index i = rank; i < A.rows(); ++i) {
-    const Eigen::VectorXd direction = svd.matrixU().col(i);
+  for (const auto& direction : nowhere.colwise())
     if (!(std::abs(direction.dot(left)) <= share * direction.cwiseAbs().dot(in_play))) return false;
-  }
   return true;
 }
 
-/// The direction that A takes to nothing along which what is left over pushes, or any where it pushes along none: a
-/// unit vector. \param rank of A, less than its size
+/// The same of a matrix of that rank.
+inline bool reaches(const Eigen::MatrixXd& A, Eigen::Index rank, const Eigen::VectorXd& left,
+                    const Eigen::VectorXd& in_play) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullU);
+  return reaches(svd.matrixU().rightCols(A.rows() - rank), left, in_play);
+}
+
+/// The direction among those that nothing holds along which what is left over pushes, or any where it pushes along
+/// none: a unit vector.
+/// \param none independent columns, one or more
+inline Eigen::VectorXd along_unheld(const Eigen::MatrixXd& none, const Eigen::VectorXd& left) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> along(none);
+  const Eigen::VectorXd pushed = none * along.solve(left);
+  const double size = pushed.norm();
+  return size > 0 ? Eigen::VectorXd(pushed / size) : Eigen::VectorXd(none.rightCols<1>().normalized());
+}
+
+/// The same of the directions that a matrix of that rank, less than its size, takes to nothing.
 inline Eigen::VectorXd unheld(const Eigen::MatrixXd& A, Eigen::Index rank, const Eigen::VectorXd& left) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullV);
-  const auto none = svd.matrixV().rightCols(A.cols() - rank);
-  const Eigen::VectorXd pushed = none * (none.transpose() * left);
-  const double size = pushed.norm();
-  return size > 0 ? Eigen::VectorXd(pushed / size) : Eigen::VectorXd(svd.matrixV().rightCols<1>());
+  return along_unheld(svd.matrixV().rightCols(A.cols() - rank), left);
 }
 
 }  // namespace withy

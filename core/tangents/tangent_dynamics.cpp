@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/tangents/first_order_recursion.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
 #include "withy/core/tangents/seeded_states.hpp"
@@ -155,6 +156,26 @@ Eigen::VectorXd TangentDynamics::terms_in_play(double t, std::span<const double>
   return analysis::sizes_of(tree, wrenches(t, y, tree, nullptr)) + elastic(y).cwiseAbs() + load_sizes(t, y);
 }
 
+Eigen::VectorXd TangentDynamics::stiffness_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a,
+                                                   const Eigen::VectorXd& terms, const Eigen::VectorXd& mass) const {
+  /// Data are seldom typed more exactly than to 1e-9, a hundred times what derivatives are known to.
+  constexpr double typed = 100;
+  const Builder<double> build{*this, y, a, {}};
+  const Recursion<double> tree(*model_, build.hinges(), build.bodies([](std::size_t) { return false; }));
+  const Eigen::VectorXd sizes = analysis::sizes_of(tree, wrenches(t, y, tree, nullptr));
+  double squared = 0;
+  for (std::size_t h = 0; h < model_->hinges().size(); ++h) {
+    std::size_t s = model_->layout().hinges[h].speed;
+    for (const HingeRate& rate : hinge_rates(*model_->hinges()[h].hinge)) {
+      const auto i = static_cast<Eigen::Index>(s++);
+      if (!rate.angular) continue;
+      const double turned = y[model_->layout().positions + static_cast<std::size_t>(i)];
+      squared = std::max({squared, turned * turned, mass[i] > 0 ? typed * sizes[i] / mass[i] : 0.0});
+    }
+  }
+  return terms + squared * mass.cwiseAbs();
+}
+
 Eigen::VectorXd TangentDynamics::rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   const Layout& layout = model_->layout();
   std::vector<double> y_dot(layout.size()), scratch(model_->load_scratch());
@@ -207,10 +228,11 @@ Stiffness TangentDynamics::stiffness(double t, std::span<const double> y, const 
   result.by_position.resize(n, n);
   result.by_speed.setZero(n, n);
   result.residual = differentiate(t, y, a, 0, result.by_position, nullptr);
+  result.in_play = result.by_position.diagonal().cwiseAbs();
   add_elastic(result);
   add_loads(t, y, a, result);
-  return {std::move(result.residual), std::move(result.by_position), std::move(result.by_state),
-          std::move(result.rate_by_position), std::move(result.rate_by_state)};
+  return {std::move(result.residual),         std::move(result.by_position),   std::move(result.by_state),
+          std::move(result.rate_by_position), std::move(result.rate_by_state), std::move(result.in_play)};
 }
 
 Eigen::VectorXd TangentDynamics::mass_diagonal(double t, std::span<const double> y) const {
@@ -229,11 +251,13 @@ Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Ei
   result.by_position = all.leftCols(n);
   result.by_speed = all.middleCols(n, n);
   result.mass = all.rightCols(n);
+  result.in_play = result.by_position.diagonal().cwiseAbs();
   add_elastic(result);
   for (std::size_t l = 0; l < differenced.size(); ++l) {
     if (differenced[l]) result.differenced.push_back(model_->loads()[l].name);
   }
   add_loads(t, y, a, result);
+  result.in_play = stiffness_in_play(t, y, a, result.in_play, result.mass.diagonal());
   result.drift = drift(y);
   return result;
 }

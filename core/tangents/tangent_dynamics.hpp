@@ -32,6 +32,9 @@ struct Tangents {
   Eigen::MatrixXd by_state, rate_by_position, rate_by_speed, rate_by_state;
   /// ∂g/∂a where a load measures accelerations (z × speeds); the derivatives above are then those at a that stays.
   Eigen::MatrixXd rate_by_acceleration;
+  /// Sizes of what the diagonal of by_position is known against, as TangentDynamics::stiffness_in_play tells; empty
+  /// where nobody asked.
+  Eigen::VectorXd in_play;
   /// C of δ̇ = δu + C δ: zero but where speeds are no derivatives of coordinates (angular velocities).
   Eigen::MatrixXd drift;
   /// Loads whose derivatives are numerical: without BoundLoad::add_derivatives or those of their continuous part, or
@@ -44,6 +47,8 @@ struct Stiffness {
   Eigen::VectorXd residual;
   Eigen::MatrixXd by_position;
   Eigen::MatrixXd by_state, rate_by_position, rate_by_state;  ///< empty where no load has continuous states
+  Eigen::VectorXd
+      diagonal_terms;  ///< magnitudes of the terms that each element of by_position's diagonal is the sum of
 };
 
 /// Position of a frame with its derivatives.
@@ -72,6 +77,13 @@ class TangentDynamics {
   /// What the terms of the residual amount to, one a speed [N m, N]: what weight, inertia, wrenches, stiffness and each
   /// load would come to if none made up for another. Against this a residual is small or not.
   [[nodiscard]] Eigen::VectorXd terms_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
+  /// What stiffness forces in play could have, one a speed [N m/rad, N/m]: beside a small share of it an element of the
+  /// diagonal of ∂r/∂δ is rounding. The terms of that element, and M_ii ω² with the greatest ω² that weight, inertia
+  /// and wrenches turn anything with, which leave rounding on what they do not turn too. Springs of hinges and the
+  /// stiffness of bodies act on their own coordinates alone.
+  /// \param terms magnitudes of the terms of the diagonal \param mass M_ii
+  [[nodiscard]] Eigen::VectorXd stiffness_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a,
+                                                  const Eigen::VectorXd& terms, const Eigen::VectorXd& mass) const;
   /// g of Tangents: rates of the continuous states of loads.
   [[nodiscard]] Eigen::VectorXd rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   [[nodiscard]] Tangents tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
@@ -110,6 +122,7 @@ class TangentDynamics {
   /// The residual; its derivatives along directions from `from` on, one a column.
   Eigen::VectorXd differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
                                 Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
+  /// add_elastic, add_loads and add_continuous add what they add to the diagonal of by_position to in_play too.
   void add_elastic(Tangents& tangents) const;
   void add_loads(double t, std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;
   void add_continuous(double t, std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;

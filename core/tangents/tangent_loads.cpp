@@ -55,6 +55,7 @@ void TangentDynamics::add_elastic(Tangents& result) const {
     const auto at = static_cast<Eigen::Index>(slots_[b]->speed);
     result.by_position.block(at, at, shape.modes(), shape.modes()) += shape.stiffness;
     result.by_speed.block(at, at, shape.modes(), shape.modes()) += shape.damping;
+    result.in_play.segment(at, shape.modes()) += shape.stiffness.diagonal().cwiseAbs();
   }
 }
 
@@ -66,7 +67,12 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, const Eigen
   for (const LoadNode& node : model_->loads()) {
     const BoundLoad& load = *node.load;
     const auto positions = y.first(layout.positions), speeds = y.subspan(layout.positions, layout.speeds);
-    if (load.add_derivatives(t, positions, speeds, by_position, by_speed)) continue;
+    const Eigen::VectorXd diagonal_before = by_position.diagonal();
+    const auto note_terms = [&] { tangents.in_play += (by_position.diagonal() - diagonal_before).cwiseAbs(); };
+    if (load.add_derivatives(t, positions, speeds, by_position, by_speed)) {
+      note_terms();
+      continue;
+    }
     const Eigen::MatrixXd position_before = by_position, speed_before = by_speed;
     const auto at = [&](std::span<const double> state) -> Eigen::VectorXd {
       Eigen::VectorXd efforts = Eigen::VectorXd::Zero(n);
@@ -91,6 +97,7 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, const Eigen
           },
           difference_step);
     }
+    note_terms();
     if (by_position != position_before || by_speed != speed_before) tangents.differenced.push_back(node.name);
   }
   tangents.by_position -= by_position;
@@ -112,6 +119,7 @@ void TangentDynamics::add_continuous(double t, std::span<const double> y, const 
   ContinuousTangents own =
       continuous_tangents(*model_, t, y, {a.data(), model_->layout().speeds}, move, at_frames, differenced);
   tangents.by_position -= own.effort_by_position;
+  tangents.in_play += own.effort_by_position.diagonal().cwiseAbs();
   tangents.by_speed -= own.effort_by_speed;
   tangents.by_state = -own.effort_by_state;
   tangents.rate_by_position = std::move(own.rate_by_position);

@@ -107,6 +107,112 @@ loads: {brake: {type: hinge-spring, hinge: axle, stiffness: 0, damping: 4}}
   EXPECT_NEAR(modes[1].damping_ratio(), 1, 1e-12);
 }
 
+/// A hub of 50 kg m² on an axle, with a beam whose fastest mode has 80,000 rad/s.
+std::string hub_with_beam(const std::string& loads, const std::string& damping = "0") {
+  return "format: withy/1\ntime: {end: 1}\nbodies:\n"
+         "  hub: {type: rigid, mass: 100, inertia: [50, 50, 50, 0, 0, 0]}\n"
+         "  b: {type: beam, length: 0.5, mass_per_length: 1, damping_ratio: " +
+         damping +
+         ", extension: {stiffness: 2.6e7, modes: 3},\n"
+         "    bending_y: {stiffness: 200, modes: 3, family: orthogonal-polynomials}}\n"
+         "hinges:\n  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}\n"
+         "  root: {type: weld, parent: hub, child: b}\nloads: {" +
+         loads + "}\n";
+}
+constexpr double hub_inertia = 50 + 0.5 * 0.25 / 3;  ///< [kg m²] with the beam
+
+/// ω² = k/J and ζ = c/(2√(kJ)) hold as if the beam were rigid, to (ω/ω₁)² < 1e-7 of its mass.
+TEST(Modes, that_are_slow_are_found_beside_those_that_are_millions_of_times_faster) {
+  for (const double k : {5.0, 5e-2, 5e-4, 5e-6}) {
+    const double omega = std::sqrt(k / hub_inertia), c = 2e-3 * std::sqrt(k * hub_inertia);
+    for (const bool damped : {false, true}) {
+      std::ostringstream spring;
+      spring << "spring: {type: hinge-spring, hinge: axle, stiffness: " << k << ", damping: " << (damped ? c : 0)
+             << "}";
+      AnalysedScene scene(hub_with_beam(spring.str(), damped ? "0.01" : "0"), "quadratic");
+      const std::vector<Mode> modes = steady_modes(scene, {});
+      ASSERT_EQ(modes.size(), 7U) << k;
+      EXPECT_FALSE(modes[0].rigid) << k;
+      EXPECT_NEAR(modes[0].frequency(), omega, 1e-7 * omega) << k;
+      EXPECT_NEAR(modes[0].damping_ratio(), damped ? 1e-3 : 0, 1e-8) << k;
+      EXPECT_EQ(modes[0].dominant, scene.speed("axle"));
+      EXPECT_GT(modes.back().frequency(), 8e4);
+    }
+  }
+}
+
+/// The same of a brake: the pole at −c/J is no zero, however slow.
+TEST(Modes, of_what_a_weak_brake_stops_are_no_zeros_beside_fast_ones) {
+  AnalysedScene scene(hub_with_beam("brake: {type: hinge-spring, hinge: axle, stiffness: 0, damping: 5e-4}"),
+                      "quadratic");
+  const std::vector<Mode> modes = steady_modes(scene, {});
+  ASSERT_EQ(modes.size(), 8U);
+  EXPECT_TRUE(modes[0].rigid && modes[0].single);
+  EXPECT_TRUE(!modes[1].rigid && modes[1].single);
+  EXPECT_NEAR(modes[1].eigenvalue.real(), -5e-4 / hub_inertia, 1e-7 * 5e-4 / hub_inertia);
+  EXPECT_EQ(modes[1].dominant, scene.speed("axle"));
+}
+
+TEST(Modes, of_what_nothing_holds_are_rigid_beside_fast_ones) {
+  AnalysedScene scene(hub_with_beam(""), "quadratic");
+  const std::vector<Mode> modes = steady_modes(scene, {});
+  ASSERT_EQ(modes.size(), 7U);
+  EXPECT_TRUE(modes[0].rigid && !modes[0].single);
+  EXPECT_EQ(modes[0].dominant, scene.speed("axle"));
+  for (std::size_t i = 1; i < modes.size(); ++i) EXPECT_FALSE(modes[i].rigid) << i;
+}
+
+/// A tether of 1e5 N, whose stretching is a million times faster than its bending.
+TEST(Modes, of_a_soft_and_inextensible_beam_are_not_rigid) {
+  AnalysedScene scene(R"(format: withy/1
+time: {end: 1}
+bodies:
+  b: {type: beam, length: 100, mass_per_length: 0.01, bending_y: {stiffness: 1e-3, modes: 3},
+      extension: {stiffness: 1e5, modes: 2}}
+hinges: {root: {type: weld, parent: world, child: b}}
+)",
+                      "quadratic");
+  const std::vector<Mode> modes = steady_modes(scene, {});
+  ASSERT_EQ(modes.size(), 5U);
+  EXPECT_FALSE(modes[0].rigid);
+  // (β₁L)² √(EI/ρ)/L²
+  EXPECT_NEAR(modes[0].frequency(), 3.5160152685 * std::sqrt(0.1) / 1e4, 1e-12);
+}
+
+/// The more segments, the faster the fastest mode: the slowest one and the number of all stay what they are.
+TEST(Modes, of_a_beam_in_many_segments_are_all_there) {
+  const auto modes_of = [](int segments) {
+    AnalysedScene scene(
+        "format: withy/1\ntime: {end: 1}\nbodies:\n"
+        "  b: {type: beam, length: 2, mass_per_length: 1.5, damping_ratio: 0.01, segments: " +
+            std::to_string(segments) +
+            ",\n    bending_y: {stiffness: 40, modes: 3, family: orthogonal-polynomials}}\n"
+            "hinges: {root: {type: weld, parent: world, child: b}}\n",
+        "quadratic");
+    const std::vector<Mode> modes = steady_modes(scene, {});
+    EXPECT_EQ(modes.size(), 3U * static_cast<std::size_t>(segments));
+    for (const Mode& mode : modes) EXPECT_FALSE(mode.rigid || mode.single);
+    return modes;
+  };
+  const double slowest = 3.5160152685 * std::sqrt(40 / 1.5) / 4;
+  for (const int segments : {4, 32})
+    EXPECT_NEAR(modes_of(segments)[0].frequency(), slowest, 1e-6 * slowest) << segments;
+}
+
+/// 0.02 rad, whatever the beam's stiffness: a spring that is soft beside it is a spring.
+TEST(SteadyState, of_a_soft_spring_is_found_beside_stiff_bodies) {
+  for (const double k : {5.0, 5e-2, 5e-4, 5e-6}) {
+    std::ostringstream loads;
+    loads << "spring: {type: hinge-spring, hinge: axle, stiffness: " << k << "}, "
+          << "push: {type: hinge-effort, hinge: axle, law: constant, value: " << 0.02 * k << "}";
+    AnalysedScene scene(hub_with_beam(loads.str()), "quadratic");
+    const SteadyState steady = find_steady_state(*scene.dynamics, scene.state, Held(scene.layout().speeds, false));
+    ASSERT_TRUE(steady.converged) << k;
+    EXPECT_EQ(steady.neutral.size(), 0) << k;
+    EXPECT_NEAR(steady.state.y[scene.layout().hinge("axle")->position], 0.02, 1e-12) << k;
+  }
+}
+
 /// Tip load P = m g on a light cantilever, P L²/EI = 1 and 2: the elastica's tip is 0.30172 L, 0.49346 L lower and
 /// 0.05643 L, 0.16064 L nearer (Bisshopp & Drucker, Quart. Appl. Math. 3, 1945).
 TEST(SteadyState, of_exact_kinematics_is_the_elastica) {
