@@ -134,8 +134,9 @@ Eigen::VectorXd own_ratios(Eigen::MatrixXd shares, Eigen::VectorXd missing, cons
     shares.row(j) /= asked[j];
     missing[j] /= asked[j];
   }
+  // The common ratio is that of the modes that miss something: one that loads brake by more needs none.
   const Eigen::VectorXd together = shares.rowwise().sum();
-  const double alike = together.dot(missing) / together.squaredNorm();
+  const double alike = together.dot(missing.cwiseMax(0.0)) / together.squaredNorm();
   if (!(alike > 0)) return Eigen::VectorXd::Zero(shares.cols());
   Eigen::MatrixXd H = shares.transpose() * shares;
   Eigen::VectorXd g = shares.transpose() * missing;

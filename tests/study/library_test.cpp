@@ -71,6 +71,23 @@ TEST(StudyModes, OfABrakedHingeTheVibrationsGetTheDampingRatiosThatAreAsked) {
   EXPECT_NEAR(damping.modes[1].reached, 0.02, 2e-4);
 }
 
+/// A damper gives the lowest mode six times what is asked: the others get theirs all the same.
+TEST(StudyModes, WhatOneModeHasTooMuchOfTheOthersGetAsAsked) {
+  const Prepared prepared =
+      prepare(SceneValues::parse("format: withy/1\nbodies:\n"
+                                 "  b: {type: beam, length: 2, mass_per_length: 1, bending_y: {stiffness: 40, modes: "
+                                 "4}, frames: {m: {at: 1.566}}}\n"
+                                 "hinges: {w: {type: weld, parent: world, child: b}}\n"
+                                 "loads: {d: {type: spring-damper, frame: b.m, anchor: [1.566, -0.5, 0], stiffness: 0, "
+                                 "damping: 0.7}}\ntime: {end: 1}\n",
+                                 "braked"),
+              plugins());
+  const MountedDamping damping = mounted_damping({prepared, prepared.scene.initial, {}}, plugins(), {0.01, 0.01, 0.01});
+  EXPECT_EQ(damping.beyond, std::vector<std::size_t>{0});
+  EXPECT_GT(damping.modes[0].reached, 0.06);
+  for (const std::size_t j : {1, 2}) EXPECT_NEAR(damping.modes[j].reached, 0.01, 1e-3) << j;
+}
+
 /// Both lowest modes of the arm strain its links alike, in phase and against each other: no damping of each link by
 /// itself gives one of them four times the ratio of the other. What is reached is what is reported.
 TEST(StudyModes, DampingThatIsOutOfReachIsReportedAsWhatIsReached) {
