@@ -56,6 +56,14 @@ bool at_zero(const LinearSystem& s, Complex root) {
   return s.sampled() ? std::abs(exponent_of(s, root)) <= 1e-7 * pi / s.period : root == 0.0;
 }
 
+/// At half the rate of the samples, z = −1, where one of the zeros is: no rounding of it.
+void clear_half_rate(Response& r) {
+  const LinearSystem& s = r.model.system;
+  if (!s.sampled() || r.values.empty() || r.values.back().omega < pi / s.period) return;
+  const auto at_half_rate = [](Complex root) { return std::abs(root + 1.0) <= 1e-7 * pi; };
+  if (std::any_of(r.roots.zeros.begin(), r.roots.zeros.end(), at_half_rate)) r.values.back().value = 0;
+}
+
 /// G(0), or the limit of s^integrators G, as ∏ (s − zero) / ∏ (s − pole) has it.
 void find_static_gain(const TransferFunction& G, double gain, Response& r) {
   const LinearSystem& s = r.model.system;
@@ -63,12 +71,12 @@ void find_static_gain(const TransferFunction& G, double gain, Response& r) {
   const auto held = std::count_if(r.roots.poles.begin(), r.roots.poles.end(), zero);
   const auto lost = std::count_if(r.roots.zeros.begin(), r.roots.zeros.end(), zero);
   r.integrators = static_cast<int>(std::max<std::ptrdiff_t>(0, held - lost));
+  if (lost > held) return;
   const Complex here = s.sampled() ? 1.0 : 0.0;
   if (std::none_of(r.every.begin(), r.every.end(), zero)) {
     r.static_gain = G(here)(0, 0).real();
     return;
   }
-  if (lost > held) return;
   Complex logarithm = std::log(Complex(gain));
   for (const Complex z : r.roots.zeros)
     if (!zero(z)) logarithm += std::log(here - z);
@@ -168,6 +176,7 @@ Response response(const Configuration& c, const ResponseQuestion& question) {
   Eigen::VectorXcd marks(r.roots.poles.size() + r.roots.zeros.size());
   marks << r.roots.poles, r.roots.zeros;
   r.values = frequency_response(G, low, high, question.per_decade, marks);
+  clear_half_rate(r);
   r.peaks = peaks(G, r.values, r.roots.poles);
   try {
     r.margins = margins(G, r.values, r.roots.hidden, r.integrators > 0 ? std::optional<double>() : r.static_gain);

@@ -1,5 +1,6 @@
 #include "withy/core/analysis/frequency_response.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -85,6 +86,18 @@ Eigen::VectorXcd without(const LinearSystem& system, const Eigen::VectorXcd& val
   return Eigen::Map<const Eigen::VectorXcd>(left.data(), static_cast<Eigen::Index>(left.size()));
 }
 
+/// At half the rate of the samples, z = −1; zero where that is rounding of what makes it.
+Complex at_half_rate(const TransferFunction& G) {
+  constexpr double rounding = 1e-12;
+  const LinearSystem& s = G.system();
+  const Complex value = G(-1.0)(0, 0);
+  Eigen::MatrixXd held = -s.A;
+  held.diagonal().array() -= 1;
+  const Eigen::VectorXd states = held.inverse().cwiseAbs() * s.B.col(0).cwiseAbs();
+  const double terms = s.C.row(0).cwiseAbs().dot(states) + std::abs(s.D(0, 0));
+  return std::isfinite(terms) && std::abs(value) <= rounding * terms ? 0.0 : value;
+}
+
 /// The gains at the ends of the frequencies, where G is real, and the size of the last.
 void look_at_ends(const TransferFunction& G, std::optional<double> static_gain, Margins& margins) {
   const auto add = [&](double omega, Complex value) {
@@ -92,7 +105,7 @@ void look_at_ends(const TransferFunction& G, std::optional<double> static_gain, 
   };
   const LinearSystem& s = G.system();
   if (static_gain) add(0, *static_gain);
-  const Complex last = s.sampled() ? G(-1.0)(0, 0) : Complex(s.D(0, 0));
+  const Complex last = s.sampled() ? at_half_rate(G) : Complex(s.D(0, 0));
   add(s.sampled() ? pi / s.period : std::numeric_limits<double>::infinity(), last);
   margins.last = std::abs(last);
 }

@@ -144,5 +144,27 @@ loads:
   }
 }
 
+/// An integral holds what a force moves: G(0) is zero, and of a sampled loop G at half its rate, to the last digit. No
+/// gain makes the loop unstable there.
+TEST(Response, ThatIsZeroAtAnEndHasNoGainMarginThere) {
+  for (const std::string sample : {"", ", sample: 0.02"}) {
+    const Prepared prepared = scene_of(R"(
+bodies: {m: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [1, 0, 0], parent: world, child: m}}
+loads:
+  control: {type: pid, of: axle, hinge: axle, proportional: 10, derivative: 4, integral: 3, filter: 0.05)" +
+                                       sample + R"(}
+  push: {type: input, hinge: axle}
+)");
+    const Response r = response(at_start(prepared), {"push", "axle", {}, {}, 50, {}});
+    EXPECT_EQ(r.static_gain, 0) << sample;
+    ASSERT_TRUE(r.margins.has_value());
+    for (const GainMargin& margin : r.margins->gains) {
+      EXPECT_GT(margin.omega, 0) << sample << ' ' << margin.factor;
+      EXPECT_LT(margin.factor, 1e9) << sample << ' ' << margin.omega;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace withy::study
