@@ -90,7 +90,7 @@ std::string equilibrium_text(const study::Configuration& c, const study::Equilib
   const Scene& scene = c.prepared().scene;
   std::string text =
       fmt::format("{} in {}: {} after {}{} steps of Newton's method\n\n{}", scene.file, scene.formulation_name,
-                  found.passing.empty() ? "steady" : "balanced at this instant", along_forces(found.steady),
+                  found.instant ? "balanced at this instant" : "steady", along_forces(found.steady),
                   found.steady.iterations, hinge_table(c, found.steady).str());
   if (c.layout().continuous > 0 || c.sampled()) text += '\n' + state_table(c, found.steady).str();
   if (!found.deflections.empty()) text += '\n' + deflection_table(found).str();

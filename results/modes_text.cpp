@@ -144,9 +144,8 @@ std::string turning_text(const study::TurningModes& turn, const std::string& lab
   std::string text;
   const std::string at = label.empty() ? "" : " at " + label;
   if (turn.moves && (turn.floquet || turn.blades))
-    text +=
-        fmt::format("\nThe free coordinates follow a motion of the same period{}: by up to {:.3g} from the start.\n",
-                    at, turn.greatest_displacement);
+    text += fmt::format("\nThe free coordinates follow a motion of the same period{}: by up to {} from the start.\n",
+                        at, turn.greatest_displacement);
   if (turn.floquet)
     text += fmt::format("\nWhole turn of {:.6g} s{}: {} (Floquet; growth to {:.1g}/s)\n\n{}", turn.check.turning.period,
                         at, turn.floquet->stable ? "stable" : "unstable", turn.floquet->resolution,

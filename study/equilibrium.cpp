@@ -14,7 +14,8 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
   const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
   found.derivatives = derivatives_text(tangents);
   // The rate of change at this angle may vanish where weight is at its greatest: a turn tells.
-  found.stays = stays_steady(c.dynamics(), tangents, state, c.held()) && turning_modes(c, state, {}).check.steady;
+  const TurningModes turn = turning_modes(c, state, {});
+  found.stays = stays_steady(c.dynamics(), tangents, state, c.held()) && turn.check.steady && turn.uneven.empty();
   found.problem = no_steady_state(c, found.steady);
   for (const Tip& tip : tips(c.prepared().model())) {
     if (tip.flexible)
@@ -24,8 +25,10 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
   found.against = deflections_against_next(c, found.steady, holding, registry);
   if (found.stays) return found;
   found.passing = moving_freely(c, state);
-  found.changing = !found.passing.empty()
-                       ? passing_text(found.passing)
+  found.instant = !found.passing.empty() || !turn.uneven.empty();
+  found.changing = !found.passing.empty() ? passing_text(found.passing)
+                   : !turn.uneven.empty()
+                       ? uneven_text(turn.uneven)
                        : "The hinges turn and what acts on the free coordinates turns with them (gravity in the plane "
                          "of rotation, as a rule): this state is steady at this angle alone.";
   return found;

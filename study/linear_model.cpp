@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "withy/core/analysis/steady_state.hpp"
+#include "withy/core/analysis/turn.hpp"
 #include "withy/core/model/switched_load.hpp"
 #include "withy/core/plugin/changing_law.hpp"
 #include "withy/study/linear_inputs.hpp"
@@ -97,7 +98,8 @@ LinearModel about(const Configuration& c, const SmallMotions& motions, const Sam
   for (const Eigen::Index s : motions.free())
     linear.accelerations.emplace_back(c.layout().speed_names[static_cast<std::size_t>(s)], motions.accelerations()[s]);
   linear.changing = changing_loads(c);
-  linear.equilibrium = at_rest(c) && sampled.steady() && is_steady_state(c.dynamics(), c.state(), c.held());
+  linear.equilibrium = at_rest(c) && sampled.steady() && is_steady_state(c.dynamics(), c.state(), c.held()) &&
+                       uneven_motions(c.dynamics(), c.state(), c.held()).empty();
   return linear;
 }
 

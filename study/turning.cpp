@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/core/model/columns.hpp"
+
 namespace withy::study {
 namespace {
 
@@ -42,16 +44,36 @@ BladeModes blades_of(const TurningForm& form, const Configuration& c, const std:
   throw std::domain_error(why);
 }
 
-double greatest_displacement(const Turn& turn, const Layout& layout) {
-  double greatest = 0;
-  const auto of = [&](const Slot& slot) {
-    for (const State& state : turn.states) {
-      for (std::size_t i = 0; i < slot.positions; ++i)
-        greatest = std::max(greatest, std::abs(state.y[slot.position + i] - turn.states[0].y[slot.position + i]));
-    }
+/// "0.276 rad (z)", and of coordinates of other units the same.
+std::string greatest_displacement(const Turn& turn, const Configuration& c) {
+  struct Farthest {
+    std::string unit, name;
+    double by = 0;
   };
-  for (const Slot& slot : layout.bodies) of(slot);
-  return greatest;
+  std::vector<Farthest> all;
+  const auto meet = [&](const Column& coordinate, std::size_t at) {
+    double by = 0;
+    for (const State& state : turn.states) by = std::max(by, std::abs(state.y[at] - turn.states[0].y[at]));
+    const auto same = [&](const Farthest& f) { return f.unit == coordinate.unit; };
+    auto found = std::find_if(all.begin(), all.end(), same);
+    if (found == all.end()) found = all.insert(all.end(), {coordinate.unit, {}, 0});
+    if (by > found->by) found->by = by, found->name = coordinate.name;
+  };
+  const Layout& layout = c.layout();
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    const Slot& slot = layout.hinges[h];
+    if (c.held()[slot.speed]) continue;
+    const std::vector<Column> columns = coordinate_columns(c.prepared().model().hinges()[h]);
+    for (std::size_t i = 0; i < slot.positions; ++i) meet(columns[i], slot.position + i);
+  }
+  for (const Slot& slot : layout.bodies)
+    for (std::size_t i = 0; i < slot.positions; ++i) meet({layout.speed_names[slot.speed + i], {}}, slot.position + i);
+  std::string text;
+  for (const Farthest& f : all)
+    if (f.by > 0)
+      text += fmt::format("{}{:.3g}{}{} ({})", text.empty() ? "" : " and ", f.by, f.unit.empty() ? "" : " ", f.unit,
+                          f.name);
+  return text;
 }
 
 /// The first load whose efforts are others a period later with everything as it was; empty where all repeat.
@@ -84,6 +106,9 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
   TurningModes result;
   try {
     result.check = check_turn(c.dynamics(), steady, c.held(), wish.period);
+    if (wish.period == 0)
+      for (const std::size_t m : uneven_motions(c.dynamics(), steady, c.held()))
+        result.uneven.push_back(c.prepared().model().motions()[m].name);
     if (!result.check.steady) result.passing = moving_freely(c, steady);
     if (!wish.floquet && !wish.blades) return result;
     const Turning& turning = result.check.turning;
@@ -102,7 +127,7 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
     }
     const TurningForm form = turning_form(c.dynamics(), steady, c.held(), turning);
     result.moves = !form.turn.constant;
-    result.greatest_displacement = greatest_displacement(form.turn, c.layout());
+    result.greatest_displacement = greatest_displacement(form.turn, c);
     if (wish.floquet) result.floquet = floquet_of(form, c);
     if (!wish.blades) return result;
     try {
@@ -137,11 +162,21 @@ std::string passing_text(const std::vector<std::string>& hinges) {
       hinges.size() > 1 ? "them at their rates" : "it at its rate");
 }
 
+std::string uneven_text(const std::vector<std::string>& motions) {
+  const bool many = motions.size() > 1;
+  return fmt::format(
+      "The motion{} '{}' {} not go on at the rate {} at this instant, and what is free feels it: this is balanced now "
+      "and no state that stays. Choose a time at which {} (--at), or hold the hinge (--lock, --spin).",
+      many ? "s" : "", fmt::join(motions, "', '"), many ? "do" : "does", many ? "they have" : "it has",
+      many ? "they rest" : "it rests");
+}
+
 std::string turn_text(const TurningModes& turn) {
+  constexpr const char* no_stability = " Growth and decay are those of this instant and tell no stability.";
   const TurnCheck& check = turn.check;
   const Turning& turning = check.turning;
-  if (!turn.passing.empty())
-    return passing_text(turn.passing) + " Growth and decay are those of this instant and tell no stability.";
+  if (!turn.passing.empty()) return passing_text(turn.passing) + no_stability;
+  if (!turn.uneven.empty()) return uneven_text(turn.uneven) + no_stability;
   if (!turning.problem.empty())
     return "Whether the equations change as the hinges turn was not looked at: " + turning.problem + ".";
   if (turning.period == 0) return {};

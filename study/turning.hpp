@@ -41,12 +41,15 @@ struct BladeModes {
 struct TurningModes {
   TurnCheck check;
   bool moves = false;  ///< the free coordinates follow a periodic motion, and are not at rest in the turning frames
-  double greatest_displacement = 0;  ///< from the state at the start, of a modal coordinate or hinge [m, rad]
+  std::string greatest_displacement;  ///< what moves farthest from the state at the start: of each unit one coordinate
   std::optional<FloquetModes> floquet;
   std::optional<BladeModes> blades;
   /// Hinges that move and that nothing holds at their rates, where this balances at one angle alone: the state is an
   /// instant of a motion, and none that stays.
   std::vector<std::string> passing;
+  /// Motions that do not go on at the rate they have, of hinges that what is free feels, where no period is given: an
+  /// instant likewise.
+  std::vector<std::string> uneven;
   std::string problem;        ///< why there are no exponents; empty where there are
   std::string blade_problem;  ///< why no blades are seen; empty where they are, or nobody asked
 };
@@ -67,6 +70,8 @@ std::string turn_text(const TurningModes& turn);
 
 /// Hinges that are not held and whose rates do not vanish.
 std::vector<std::string> moving_freely(const Configuration& configuration, const State& state);
+/// That a state does not stay with motions that do not go on at the rates they have, and what to do.
+std::string uneven_text(const std::vector<std::string>& motions);
 /// That a state with such hinges does not stay, and what to do.
 std::string passing_text(const std::vector<std::string>& hinges);
 

@@ -305,6 +305,26 @@ State carried(const Model& model, const Turning& turning, const State& start, do
   return state;
 }
 
+std::vector<std::size_t> uneven_motions(const TangentDynamics& dynamics, const State& state, const Held& held) {
+  const Model& model = dynamics.model();
+  std::vector<std::size_t> uneven;
+  for (std::size_t m = 0; m < model.motions().size(); ++m)
+    if (const Motion& motion = *model.motions()[m].motion; !motion.locks() && !constant_rate(motion, state.time))
+      uneven.push_back(m);
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  if (uneven.empty() || free.empty()) return {};
+  const Tangents t = dynamics.tangents(state.time, state.y, dynamics.steady_accelerations(state.time));
+  std::erase_if(uneven, [&](std::size_t m) {
+    const auto hinge = static_cast<std::size_t>(model.motions()[m].hinge);
+    const auto driven = static_cast<Eigen::Index>(model.layout().hinges[hinge].speed);
+    const auto unmoved = [&](const Eigen::MatrixXd& by) { return by(free, driven).isZero(0); };
+    return unmoved(t.mass) && unmoved(t.by_position) && unmoved(t.by_speed) &&
+           (t.rate_by_position.size() == 0 ||
+            (t.rate_by_position.col(driven).isZero(0) && t.rate_by_speed.col(driven).isZero(0)));
+  });
+  return uneven;
+}
+
 TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const Held& held, double period) {
   TurnCheck check;
   check.turning = turning(dynamics.model(), steady, period);

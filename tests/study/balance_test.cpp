@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "withy/study/equilibrium.hpp"
+#include "withy/study/linear_model.hpp"
 #include "withy/study/modes.hpp"
 #include "withy/tests/study/linear_scenes.hpp"
 #include "withy/tests/study/scenes.hpp"
@@ -209,6 +210,70 @@ hinges:
   EXPECT_LT(at.turn->check.change, 1e-8) << "of the greatest element";
   EXPECT_TRUE(at.turn->check.steady);
   EXPECT_TRUE(at.turn->check.periodic()) << "weight holds the pin, then lets it go";
+}
+
+/// A flap on an axle that a motion drives to and fro, and a pendulum on a car that goes from here to there.
+TEST(Balance, OfWhatAMotionAcceleratesIsThatOfAnInstant) {
+  const Prepared axle = scene_of(R"(
+gravity: [0, 0, -9.81]
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {e: {position: [0.2, 0, 0]}}}
+  p: {type: rigid, mass: 2, center_of_mass: [1, 0, 0], inertia: [0.01, 0.1, 0.1, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  flap: {type: revolute, axis: [0, 1, 0], parent: hub.e, child: p}
+motions: {sway: {type: sine, hinge: axle, amplitude: 0.5, period: 2}}
+)");
+  const Equilibrium swayed = find_equilibrium(at_start(axle), {}, plugins());
+  EXPECT_EQ(swayed.problem, "");
+  EXPECT_FALSE(swayed.stays);
+  EXPECT_THAT(swayed.changing, HasSubstr("motion 'sway' does not go on"));
+  EXPECT_FALSE(modes_at(at_start(axle), false).steady->stays.value());
+
+  const Prepared car = scene_of(R"(
+gravity: [0, 0, -9.81]
+bodies:
+  car: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  p: {type: rigid, mass: 2, center_of_mass: [0, 0, -1], inertia: [0.1, 0.1, 0.01, 0, 0, 0]}
+hinges:
+  rail: {type: prismatic, axis: [1, 0, 0], parent: world, child: car}
+  pin: {type: revolute, axis: [0, 1, 0], parent: car, child: p}
+motions: {go: {type: quintic, hinge: rail, to: 3, duration: 2}}
+)");
+  for (const double time : {0.4, 3.0}) {
+    State state = car.scene.initial;
+    state.time = time;
+    car.model().prescribe(state);
+    const Configuration c(car, state, {});
+    const Equilibrium found = find_equilibrium(c, {}, plugins());
+    EXPECT_EQ(found.problem, "") << time;
+    EXPECT_EQ(found.stays, time > 2) << found.changing;
+    Configuration there = c;
+    there.set_state(found.steady.state);
+    EXPECT_EQ(linear_model(there, {{"pin"}, {"pin"}}).equilibrium, time > 2) << time;
+  }
+}
+
+/// The bob on a turning arm swings under weight, on a hinge and with no body that deforms.
+TEST(Balance, OverATurnTellsWhatMovesAndByHowMuch) {
+  const Prepared prepared = scene_of(R"(
+gravity: [0, -9.81, 0]
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {e: {position: [0.5, 0, 0]}}}
+  p: {type: rigid, mass: 2, center_of_mass: [1, 0, 0], inertia: [0, 0, 0, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  pin: {type: revolute, axis: [0, 0, 1], parent: hub.e, child: p}
+loads: {brake: {type: hinge-spring, hinge: pin, stiffness: 0, damping: 0.3}}
+)");
+  const Configuration c(prepared, prepared.scene.initial, Holding{{}, {{"axle", 8}}});
+  TurningWish wish;
+  wish.floquet = true;
+  const ModesAt at = modes_at(c, true, wish);
+  ASSERT_TRUE(at.turn->floquet.has_value()) << at.turn->problem;
+  EXPECT_TRUE(at.turn->moves);
+  EXPECT_THAT(at.turn->greatest_displacement, HasSubstr(" rad (pin)"));
+  EXPECT_GT(std::stod(at.turn->greatest_displacement), 0.1);
 }
 
 }  // namespace
