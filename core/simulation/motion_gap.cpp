@@ -47,8 +47,7 @@ std::string MotionGap::text() const {
          " at t = " + brief(worst->time) + " s, of " + brief(worst->most - worst->least) + unit +
          " that the motion goes: steps have passed over what its law does in between. Limit them "
          "(integrator.max_step, or a smaller step); where the law has a kink, as of min, max or abs, give it as a "
-         "table "
-         "or in parts.";
+         "table or in parts.";
 }
 
 }  // namespace withy
