@@ -114,6 +114,9 @@ class AdaptiveStepper : public OneStep {
     return std::isfinite(greatest) ? caution_ * greatest : std::numeric_limits<double>::quiet_NaN();
   }
 
+  /// Whether the error of the work is among those that error_ratio() looks at.
+  [[nodiscard]] bool work_counts() const { return counted_ == size(); }
+
   Eigen::ArrayXd error_;  ///< estimated error of next_
 
  private:

@@ -86,6 +86,9 @@ class RadauStepper final : public AdaptiveStepper {
       return {{}, unsolved};
     }
     if (r.rate > slow_rate) stale_ = true;
+    // The power is that of the stages before the last correction, which for what is linear is the only one.
+    if (work_counts()) r = stages_.solve(t, h, y(), tolerance_, most_iterations, rates);
+    if (r.end != CollocationStages::End::converged) return {r.evaluation, unsolved};
 
     const Eigen::MatrixXd& z = stages_.z();
     next_ = y();

@@ -14,13 +14,6 @@
 namespace withy {
 namespace {
 
-/// "rad, or m of what slides".
-std::string unit_text(const std::string& unit) {
-  if (unit == any_unit) return "the unit of what is compared";
-  const std::string turning = unit_at_hinge(unit, false), sliding = unit_at_hinge(unit, true);
-  return turning == sliding ? turning : fmt::format("{}, or {} of what slides", turning, sliding);
-}
-
 std::string bracketed(const std::string& unit) {
   return unit.empty() || unit == "1" ? "" : " [" + unit_text(unit) + "]";
 }
@@ -67,6 +60,12 @@ const char* referent(ParameterSpec::Refers what) {
       break;
   }
   return "";
+}
+
+std::string unit_text(const std::string& unit) {
+  if (unit == any_unit) return "the unit of what is compared";
+  const std::string turning = unit_at_hinge(unit, false), sliding = unit_at_hinge(unit, true);
+  return turning == sliding ? turning : fmt::format("{}, or {} of what slides", turning, sliding);
 }
 
 std::string expectation(const ParameterSpec& spec) {

@@ -12,6 +12,8 @@ namespace withy {
 
 /// What a specification accepts, as "finite > 0 [N m^2]".
 std::string expectation(const ParameterSpec& spec);
+/// A parameter's unit, "rad, or m of what slides" where it is that of what a hinge does.
+std::string unit_text(const std::string& unit);
 /// What a value is, for messages: "nan", "\"25 kg\"", "a list of 3".
 std::string shown(const Value& value);
 /// "hinge", "mode family"; empty for nothing.

@@ -147,7 +147,7 @@ class SchemaWriter {
   Json described(const ParameterSpec& spec) {
     Json json = kind(spec);
     const bool has_unit = !spec.unit.empty() && spec.unit != "1";
-    json["description"] = spec.meaning + (has_unit ? fmt::format(" [{}]", spec.unit) : "");
+    json["description"] = spec.meaning + (has_unit ? fmt::format(" [{}]", unit_text(spec.unit)) : "");
     if (spec.fallback) json["default"] = value_json(*spec.fallback);
     return json;
   }

@@ -61,9 +61,9 @@ void check_continuous(const Model& model, const Checker& checker, const State& s
   for (const LoadSlot& slot : model.layout().continuous_slots)
     for (std::size_t i = 0; i < slot.count; ++i)
       if (const double number = state.y[slot.first + i]; !std::isfinite(number))
-        checker.key_error(
-            "/loads/" + model.loads()[slot.load].name,
-            fmt::format("its state '{}' begins at {}", model.loads()[slot.load].continuous->name(i), number));
+        checker.key_error("/loads/" + model.loads()[slot.load].name,
+                          fmt::format("its state '{}' begins {}", model.loads()[slot.load].continuous->name(i),
+                                      std::isnan(number) ? "with no number" : "beyond the range of numbers"));
 }
 
 }  // namespace

@@ -75,11 +75,6 @@ class TreeBuilder {
 
   void add_hinge(const std::string& name, const Value& given) {
     problems_.check_name(name, given);
-    if (is_column_of_all(name))
-      problems_.key_error(given.place().path,
-                          fmt::format("got name {}, which is that of a column that every table of results has; hinges "
-                                      "need their own",
-                                      in_quotes(name)));
     tree_.names.hinges.add(name);
     Link& link = links_.emplace_back();
     link.name = name;
@@ -127,6 +122,11 @@ class TreeBuilder {
       problems_.good = false;
     } else {
       const std::vector<HingeRate> rates = hinge_rates(*node.hinge);
+      if (!rates.empty() && is_column_of_all(name))
+        problems_.key_error(given.place().path,
+                            fmt::format("got name {}, which is that of a column that every table of results has; "
+                                        "hinges need their own",
+                                        in_quotes(name)));
       for (std::size_t i = 0; i < rates.size(); ++i)
         if (!rates[i].angular) tree_.names.sliding.add(fmt::format("{}.{}", name, i));
     }

@@ -1,7 +1,6 @@
 #include "withy/bindings/fmi/scene_numbers.hpp"
 
 #include <algorithm>
-#include <set>
 #include <string_view>
 #include <type_traits>
 
@@ -11,6 +10,7 @@
 #include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/motion.hpp"
 #include "withy/scene/grammar.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy::fmi {
 namespace {
@@ -38,12 +38,12 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text;
 }
 
-/// Parameters of what acts on a hinge, where that slides: plugins state them as of one that turns.
-Specs along(Specs specs) {
-  static const std::set<std::string> angles = {"phase", "frequency", "bandwidth"};  // of oscillations: radians anywhere
+/// Parameters of what acts on a hinge, with the units where it slides or turns. Those of maps by hinges go by their
+/// own.
+Specs at_hinge(Specs specs, bool slides) {
   for (ParameterSpec& spec : specs) {
-    if (!angles.contains(spec.key)) spec.unit = replaced(replaced(spec.unit, "N m", "N"), "rad", "m");
-    if (spec.kind == ParameterSpec::Kind::map) spec.members = along(std::move(spec.members));
+    spec.unit = unit_at_hinge(spec.unit, slides);
+    if (spec.kind == ParameterSpec::Kind::map) spec.members = at_hinge(std::move(spec.members), slides);
   }
   return specs;
 }
@@ -82,7 +82,7 @@ class Collector {
   }
   /// Of a map that is named after a hinge, by that hinge.
   [[nodiscard]] Specs of_hinge(const ParameterSpec& spec, const std::string& name, const Value& map) const {
-    return spec.key == "hinges" && slides(model_, name, component_of(map)) ? along(spec.members) : spec.members;
+    return at_hinge(spec.members, spec.key == "hinges" && slides(model_, name, component_of(map)));
   }
   void add(const std::string& path, const Value& value, const ParameterSpec& spec) {
     if (value.kind() != Value::Kind::number) return;
@@ -108,9 +108,10 @@ struct Measured {
       return found == units.end() ? "1" : found->second;
     };
     const std::string signal = unit_at("of");
+    if (signal.empty()) return at_hinge(std::move(specs), slides_along);
+    specs = at_hinge(std::move(specs), false);
     if (slides_along || unit_at("to") == "N")
       for (ParameterSpec& spec : specs) spec.unit = replaced(spec.unit, "N m", "N");
-    if (signal.empty()) return slides_along ? along(std::move(specs)) : specs;
     return signal == "rad" ? specs : of_signal(std::move(specs), signal);
   }
   [[nodiscard]] Specs operator()(const Value& part, const std::string& type, Specs specs) const {
@@ -118,7 +119,7 @@ struct Measured {
     const bool along_hinge =
         hinge != nullptr && hinge->kind() == Value::Kind::text && slides(model, hinge->text(), component_of(part));
     if (type == "pid") return of_controller(part, std::move(specs), along_hinge);
-    return along_hinge ? along(std::move(specs)) : specs;
+    return at_hinge(std::move(specs), along_hinge);
   }
 };
 

@@ -156,7 +156,7 @@ TEST(Tune, KeepsUnitsAndTheSameBitsWhateverTheJobs) {
   const TuneResult one = folder.tuned(question);
   question.jobs = 3;
   EXPECT_EQ(json_text(tune_json(one)), json_text(tune_json(folder.tuned(question))));
-  EXPECT_EQ(one.parameters[0].tuned.unit, "N m/rad");
+  EXPECT_EQ(one.parameters[0].tuned.unit, "N/m") << "the spring's hinge slides";
   EXPECT_EQ(one.parameters[2].tuned.unit, "mm");
   EXPECT_EQ(one.parameters[2].tuned.start, 20);
 }
@@ -195,7 +195,7 @@ TEST(Tune, SaysThatAModelLacksSomething) {
 TEST(Tune, StopsAtBoundsAndFindsTheLowestOfManyMinima) {
   const TuneFolder folder;
   folder.measure({}, 1e-3, 1);
-  const TuneResult bounded = folder.tuned({"loads.spring.stiffness=40..52 N m/rad", "loads.spring.damping"});
+  const TuneResult bounded = folder.tuned({"loads.spring.stiffness=40..52 N/m", "loads.spring.damping"});
   EXPECT_EQ(bounded.parameters[0].state, State::at_bound);
   EXPECT_NEAR(bounded.parameters[0].value, 52, 0.1);
   EXPECT_FALSE(bounded.parameters[0].deviation);

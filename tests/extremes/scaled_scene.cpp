@@ -153,7 +153,7 @@ class Scaler {
 
 double Gauge::factor(const std::string& unit) const {
   if (unit.empty() || unit == "1") return 1;
-  const auto dimension = read_unit(unit).unit->dimension;  // of metre, kilogram, second, radian
+  const auto dimension = read_unit(unit_at_hinge(unit, false)).unit->dimension;  // of metre, kilogram, second, radian
   return std::ldexp(1.0, dimension[0] * length + dimension[1] * mass + dimension[2] * time);
 }
 

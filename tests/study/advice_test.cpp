@@ -56,7 +56,7 @@ TEST(StudyAdvice, IsTheSameScenesRunOfItsChanges) {
 /// Runs of a chain part by all they go through: the finest are a part of the accuracy off that leaves little to others.
 TEST(StudyAdvice, WhereTheReferenceIsKnownToNearlyTheAccuracyARunThatIsNearItIsAdvised) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/rigid-chain.yaml");
-  const Prepared chain = prepare(values.set("time.end", Value(6.0), "the test"), plugins());
+  const Prepared chain = prepare(values.set("time.end", Value(5.5), "the test"), plugins());
   const Outputs outputs(chain.model());
   const auto asked = [&](double share, double tolerance) {
     Evaluator evaluator(chain, plugins(), outputs, {});
