@@ -6,8 +6,11 @@
 #include "withy/results/csv.hpp"
 
 namespace withy {
+namespace {
 
 using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 Json terms_json(const Scene& scene, const RunSummary& summary, const study::TermSizes& ledger) {
   Json j{{"scene", scene.file},        {"formulation", scene.formulation_name}, {"status", name(summary.status)},

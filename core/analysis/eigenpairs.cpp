@@ -17,7 +17,7 @@ namespace {
 /// Greatest over smallest: up to here the QR algorithm leaves digits enough.
 constexpr double far_apart = 1e4;
 /// Neighbours between which what is fast and what is slow may be told apart: no pair, and nothing that is double.
-constexpr double apart = 1.01;
+constexpr double told_apart = 1.01;
 
 /// The greatest first.
 Eigenpairs in_order(const Eigenpairs& found) {
@@ -60,7 +60,7 @@ std::optional<Eigen::Index> fast_ones(const Eigen::VectorXd& of_matrix, const Ei
   std::optional<Eigen::Index> best;
   double least = 0;
   for (Eigen::Index k = 1; k < of_matrix.size(); ++k) {
-    if (!(of_matrix[k - 1] > apart * of_matrix[k]) || !(of_inverse[k - 1] > apart * of_inverse[k])) continue;
+    if (!(of_matrix[k - 1] > told_apart * of_matrix[k]) || !(of_inverse[k - 1] > told_apart * of_inverse[k])) continue;
     // The last of the fast ones as the matrix has it, the first of the slow ones as the inverse does.
     if (!(of_matrix[k - 1] > of_inverse[k])) continue;
     const double away = std::abs(std::log(of_matrix[k - 1] / middle) + std::log(of_inverse[k] / middle));
