@@ -9,7 +9,7 @@
 namespace withy {
 namespace {
 
-constexpr int most_steps = 100;
+constexpr int most_relaxations = 100;
 constexpr std::size_t most_free = 300;  ///< of which eigenvalues are found in each step
 constexpr double longest_turn = 0.3;    ///< [rad] of a step
 /// Where 1/step is this share of the greatest stiffness, the step is nearly Newton's.
@@ -84,7 +84,7 @@ std::optional<Relaxation> relaxed(const TangentDynamics& dynamics, const State& 
   Free here(dynamics, start, free);
   Relaxation found{start};
   double slowness = 0, before = 0;  // 1/step; size of the forces
-  for (; found.steps < most_steps; ++found.steps) {
+  for (; found.steps < most_relaxations; ++found.steps) {
     if (!here.look(found.state)) return {};
     const double size = here.forces.norm();
     slowness = found.steps == 0 ? std::max(here.greatest, turn_of(here.in_own_units(here.forces)) / longest_turn)
