@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "withy/campaign/correlation.hpp"
 #include "withy/campaign/derived.hpp"
@@ -326,7 +327,7 @@ std::string is_no_plan(const std::string& file) try {
   return {};
 }
 
-Plan read_plan(const std::string& file, Registry& registry) {
+Plan read_plan(const std::string& file, Registry& registry, std::vector<std::string> plugin_folders) {
   Problems problems(file);
   Document document;
   document.directory = std::filesystem::path(file).parent_path().string();
@@ -334,6 +335,7 @@ Plan read_plan(const std::string& file, Registry& registry) {
   PlanBuilder builder(file, document, registry, problems);
   Plan plan = builder.build();
   problems.raise();
+  plan.plugin_folders = std::move(plugin_folders);
   return plan;
 }
 

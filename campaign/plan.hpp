@@ -69,7 +69,7 @@ struct Plan {
   std::vector<std::string> final, peak;  ///< names of what is kept
   HistoryPlan history;                   ///< of what is kept over time
   bool stop_on_failure = false;
-  /// Folders of plugins that a command for one of the cases has to name; the caller's to set, no part of the plan.
+  /// Folders of plugins that a command for one of the cases has to name; no part of the plan.
   std::vector<std::string> plugin_folders;
   bool lanes = false;       ///< cases that can are evaluated several at once, see case_lanes.hpp
   std::string fingerprint;  ///< SHA-256 of all that decides on the bits of the cases: plan, scene, files, programs
@@ -80,9 +80,9 @@ struct Plan {
 std::string is_no_plan(const std::string& file);
 
 /// Reads a plan, with its scene and its lists, and checks all it says: every path and every value that stands in it is
-/// tried in the scene.
+/// tried in the scene. \param plugin_folders Plan::plugin_folders
 /// \throws SceneError with every problem found; InputError where the scene's formulation cannot treat its model;
 /// std::system_error where the plan cannot be read; PluginError.
-Plan read_plan(const std::string& file, Registry& registry);
+Plan read_plan(const std::string& file, Registry& registry, std::vector<std::string> plugin_folders = {});
 
 }  // namespace withy::campaign

@@ -22,9 +22,7 @@ ExitStatus status_of(const campaign::CaseResult& result) {
 
 campaign::Plan read_plan(const SweepArguments& arguments, Registry& registry) {
   try {
-    campaign::Plan plan = campaign::read_plan(arguments.plan, registry);
-    plan.plugin_folders = arguments.plugin_directories;
-    return plan;
+    return campaign::read_plan(arguments.plan, registry, arguments.plugin_directories);
   } catch (const std::system_error& e) {
     throw InputError(e.what());
   }

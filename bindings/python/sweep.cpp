@@ -13,12 +13,6 @@
 namespace withy::python {
 namespace {
 
-campaign::Plan plan_of(const std::string& file, Registry& registry, std::vector<std::string> plugin_folders) {
-  campaign::Plan plan = campaign::read_plan(file, registry);
-  plan.plugin_folders = std::move(plugin_folders);
-  return plan;
-}
-
 /// A plan with its store, read and opened once in a process, which then runs any of its shards.
 class OpenSweep {
  public:
@@ -26,7 +20,7 @@ class OpenSweep {
   OpenSweep(host::Library library, const std::string& plan, const std::string& store, bool anew,
             std::vector<std::string> plugin_folders)
       : library_(std::move(library)),
-        plan_(plan_of(plan, library_.registry(), std::move(plugin_folders))),
+        plan_(campaign::read_plan(plan, library_.registry(), std::move(plugin_folders))),
         store_(store, plan_, anew) {}
 
   [[nodiscard]] std::string fingerprint() const { return plan_.fingerprint; }
