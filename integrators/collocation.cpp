@@ -88,6 +88,7 @@ void CollocationStages::factorize(double h) {
 void CollocationStages::predict(double h) {
   if (!(last_ > 0)) {
     z_.setZero();
+    contraction_ = 1;
     return;
   }
   // The polynomial through 0 and z_i at 0 and c_i of the last step, from its end on.

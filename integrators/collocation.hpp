@@ -43,7 +43,8 @@ class CollocationStages {
   /// The Jacobian is another.
   void refactorize() { factored_ = 0; }
 
-  /// First guess: the last step's polynomial, extrapolated; zero where there is none.
+  /// First guess: the last step's polynomial, extrapolated; zero where there is none, and then nothing is known of how
+  /// the iteration contracts.
   void predict(double h);
   /// First guess: straight on along the slope where the step begins.
   void predict_along(double h, const Eigen::ArrayXd& slope);

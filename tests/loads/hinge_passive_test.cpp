@@ -238,5 +238,26 @@ loads: {a: {type: hinge-spring, hinge: ball, component: 2, stiffness: 1}}
                                                 "angle or a displacement"));
 }
 
+// Free fall tells an implicit integrator nothing of a stop that is met at the end of a step.
+TEST(HingeLimit, is_met_by_implicit_steps_as_by_explicit_ones) {
+  const auto fall = [](const std::string& integrator) {
+    test::LoadedScene c(
+        "format: withy/1\ntime: {end: 1.5, output: 0.05}\ngravity: [0, 0, -9.81]\nintegrator: " + integrator +
+        R"(
+bodies: {ball: {type: rigid, mass: 1}}
+hinges: {h: {type: prismatic, axis: [0, 0, 1], parent: world, child: ball}}
+loads: {stop: {type: hinge-limit, hinge: h, lower: 0, stiffness: 2e5, dissipation: 0.1}}
+initial: {hinges: {h: {position: [1]}}}
+)");
+    std::vector<double> heights;
+    for (const State& s : c.run()) heights.push_back(c.position(s, "h"));
+    return heights;
+  };
+  const std::vector<double> reference = fall("{name: dopri5, rtol: 1e-10, atol: 1e-12}"), stiff = fall("{name: radau}");
+  ASSERT_EQ(stiff.size(), reference.size());
+  for (std::size_t i = 0; i < stiff.size(); ++i)
+    EXPECT_NEAR(stiff[i], reference[i], 1e-3) << 0.05 * static_cast<double>(i);
+}
+
 }  // namespace
 }  // namespace withy
