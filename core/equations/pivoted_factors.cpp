@@ -21,10 +21,12 @@ void PivotedFactors::factorize(const double* A, double least) noexcept {
     return own > nothing * greatest ? left[k] / own : 0.0;
   };
   for (rank = 0; rank < m; ++rank) {
-    std::size_t next = rank;
-    for (std::size_t k = rank + 1; k < m; ++k)
-      if (share(k) > share(next)) next = k;
-    if (!(share(next) > least)) break;
+    double most = 0;
+    for (std::size_t k = rank; k < m; ++k) most = std::max(most, share(k));
+    if (!(most > least)) break;
+    std::size_t next = m;
+    for (std::size_t k = rank; k < m; ++k)
+      if (share(k) > most / 2 && (next == m || left[k] > left[next])) next = k;
     std::swap(order[rank], order[next]);
     std::swap(left[rank], left[next]);
     for (std::size_t j = 0; j < rank; ++j) std::swap(L[rank * m + j], L[next * m + j]);

@@ -6,8 +6,10 @@
 
 namespace withy::equations {
 
-/// Cholesky factors of A with A_ii ≥ 0, rows in the order of what is left of them: at each step that row comes next of
-/// which the ones before explain least, as a share of itself. All arrays are the caller's.
+/// Cholesky factors of A with A_ii ≥ 0, rows in the order of what is left of them: at each step the greatest comes next
+/// of those which the ones before explain least, as a share of themselves (to a factor of two). A row that is next to
+/// nothing, as where a crank stands across, would pass its rounding on to all that depend on it. All arrays are the
+/// caller's.
 struct PivotedFactors {
   std::size_t size = 0;          ///< m
   double* L = nullptr;           ///< m × m row-major; row k belongs to row order[k] of A
