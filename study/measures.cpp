@@ -20,7 +20,12 @@ Eigen::Quaterniond quaternion(std::span<const double> v) {
   return Eigen::Quaterniond(v[0], v[1], v[2], v[3]).normalized();
 }
 
-std::string tip_name(const Tip& tip, bool deflection) { return tip.body + (deflection ? ".tip.deflection" : ".tip"); }
+std::string tip_name(const Tip& tip, bool deflection) {
+  return tip.body + '.' + tip.station + (deflection ? ".deflection" : "");
+}
+
+/// Whether the place of an end in the world is looked at beside its deflection.
+bool has_place(const Tip& tip) { return tip.station == "tip"; }
 
 std::string effort_name(const HingeNode& hinge) { return hinge.name + ".motion_effort"; }
 
@@ -32,7 +37,7 @@ std::string numbered(const std::string& name, std::size_t i, std::size_t count) 
 double longest_body(const Model& model) {
   double longest = 0;
   for (const BodyNode& body : model.bodies()) longest = std::max(longest, body.body->shape().length);
-  for (const Tip& tip : tips(model)) longest = std::max(longest, tip.length);
+  for (const Tip& tip : measured_ends(model)) longest = std::max(longest, tip.length);
   return longest;
 }
 
@@ -67,7 +72,7 @@ std::vector<std::string> known_names(const Model& model, const std::vector<Tip>&
   for (const HingeNode& hinge : model.hinges())
     for (const Column& rate : rate_columns(hinge)) add(rate.name);
   for (const Tip& tip : tips) {
-    add(tip_name(tip, false));
+    if (has_place(tip)) add(tip_name(tip, false));
     if (tip.flexible) add(tip_name(tip, true));
   }
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
@@ -121,7 +126,7 @@ std::size_t Output::numbers() const {
 
 Outputs::Outputs(const Model& model, const std::vector<std::string>& names, std::span<const SensorNode> sensors)
     : length_(longest_body(model)) {
-  const std::vector<Tip> all_tips = tips(model);
+  const std::vector<Tip> all_tips = measured_ends(model);
   if (names.empty()) add_all(model, all_tips, false);
   std::vector<std::string> unknown;
   for (const std::string& name : names) {
@@ -130,12 +135,13 @@ Outputs::Outputs(const Model& model, const std::vector<std::string>& names, std:
     if (outputs_.size() == before) unknown.push_back(name);
   }
   if (!unknown.empty()) throw OptionError("outputs", unknown_outputs(unknown, known_names(model, all_tips, sensors)));
-  if (outputs_.empty()) throw InputError("no hinge of the scene moves and no body has a tip: nothing to measure");
+  if (outputs_.empty())
+    throw InputError("no hinge of the scene moves, no body has a tip and none bends: nothing to measure");
 }
 
 Outputs Outputs::all(const Model& model) {
   Outputs outputs(longest_body(model));
-  outputs.add_all(model, tips(model), true);
+  outputs.add_all(model, measured_ends(model), true);
   return outputs;
 }
 
@@ -143,7 +149,7 @@ void Outputs::add_all(const Model& model, const std::vector<Tip>& tips, bool dri
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
     if (driven || !model.driven(h)) add_hinge(model, h);
   for (std::size_t i = 0; i < tips.size(); ++i) {
-    add_tip(tips[i], i, false);
+    if (has_place(tips[i])) add_tip(tips[i], i, false);
     if (tips[i].flexible) add_tip(tips[i], i, true);
   }
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
@@ -155,7 +161,7 @@ void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const 
   const std::size_t before = outputs_.size();
   if (const int h = model.hinge(name); h >= 0) add_hinge(model, static_cast<std::size_t>(h));
   for (std::size_t i = 0; i < tips.size(); ++i) {
-    if (name == tip_name(tips[i], false)) add_tip(tips[i], i, false);
+    if (name == tip_name(tips[i], false) && has_place(tips[i])) add_tip(tips[i], i, false);
     if (name == tip_name(tips[i], true) && tips[i].flexible) add_tip(tips[i], i, true);
   }
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
@@ -179,7 +185,7 @@ void Outputs::add_rates(const Model& model, const std::string& name, std::size_t
       const std::string& column = columns[i].name;
       if (name != column && !column.starts_with(name + '.')) continue;
       Output o{.name = column, .measure = Measure::sensor, .index = h};
-      o.coordinate = model.layout().positions + model.layout().hinges[h].speed + i;
+      o.coordinate = i;
       o.label = column, o.unit = columns[i].unit, o.is_rate = true, o.group = sensors + h;
       add_over(std::move(o), over);
     }
@@ -281,7 +287,7 @@ void Outputs::add_effort(const Model& model, std::size_t hinge) {
     add({.name = effort_name(node),
          .measure = rates[i].angular ? Measure::moment : Measure::force,
          .index = hinge,
-         .coordinate = model.layout().hinges[hinge].speed + i,
+         .coordinate = i,
          .label = numbered(effort_name(node), i, rates.size())});
 }
 

@@ -48,9 +48,9 @@ struct Output {
   std::string name;  ///< of the hinge, or as "link2.tip", "link2.tip.deflection", "axle.motion_effort"
   Measure measure = Measure::angle;
   Shape shape = Shape::number;
-  std::size_t index = 0;  ///< of the hinge, or of the tip among tips(model)
-  /// First one among the hinge's; of efforts its speed; of sensors the first of its numbers among those of all; of
-  /// rates the element of State::y.
+  std::size_t index = 0;  ///< of the hinge, or of the tip among measured_ends(model)
+  /// First one among the hinge's coordinates, of efforts and rates among its speeds: models with other modes have them
+  /// elsewhere. Of sensors the first of its numbers among those of all.
   std::size_t coordinate = 0;
   /// A range below this counts as this: a thousandth of a radian, of the body's length for deflections, of the longest
   /// body for slides and places. Efforts have none of their own: see `scales`.

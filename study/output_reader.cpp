@@ -12,7 +12,7 @@ OutputReader::OutputReader(const Outputs& outputs, const Model& model, const Equ
       model_(model),
       equations_(equations),
       seen_(equations.make_observation()),
-      tips_(tips(model)),
+      tips_(measured_ends(model)),
       work_(0) {
   const auto by_sensor = [](const Output& o) { return o.measure == Measure::sensor && !o.is_rate; };
   if (std::any_of(outputs.list().begin(), outputs.list().end(), by_sensor)) {
@@ -61,6 +61,11 @@ double OutputReader::Course::range(Output::Shape over) const {
   return std::max(greatest - first, first - least) * (over == Output::Shape::integral ? time - from : 1);
 }
 
+std::span<const double> OutputReader::rates_of(std::span<const double> y, std::size_t hinge) const {
+  const Slot& slot = model_.layout().hinges[hinge];
+  return y.subspan(model_.layout().positions + slot.speed, slot.speeds);
+}
+
 std::vector<double> OutputReader::read(const State& state) {
   const std::span<const double> y(state.y);
   std::vector<double> values;
@@ -75,7 +80,7 @@ std::vector<double> OutputReader::read(const State& state) {
     const Output& o = outputs_.list()[i];
     switch (o.measure) {
       case Measure::sensor: {
-        const std::span<const double> shown = o.is_rate ? y : std::span<const double>(sensed_);
+        const std::span<const double> shown = o.is_rate ? rates_of(y, o.index) : std::span<const double>(sensed_);
         if (o.over_a_run()) {
           courses_[i].note(state.time, shown[o.coordinate]);
           values.insert(values.end(), {courses_[i].result(o.shape), courses_[i].range(o.shape)});
@@ -97,7 +102,7 @@ std::vector<double> OutputReader::read(const State& state) {
       }
       case Measure::moment:
       case Measure::force:
-        values.push_back(efforts_[o.coordinate]);
+        values.push_back(efforts_[model_.layout().hinges[o.index].speed + o.coordinate]);
         break;
       case Measure::angle:
       case Measure::slide: {

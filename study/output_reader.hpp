@@ -26,6 +26,7 @@ class OutputReader {
   [[nodiscard]] Energies energies() const { return seen_->energies(); }
 
  private:
+  [[nodiscard]] std::span<const double> rates_of(std::span<const double> y, std::size_t hinge) const;
   const Outputs& outputs_;
   const Model& model_;
   const EquationsOfMotion& equations_;

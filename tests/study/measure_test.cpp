@@ -48,6 +48,46 @@ TEST(Accuracy, OfOutputsThatStandStillIsNotZero) {
   EXPECT_EQ(relative_error(outputs.none(), outputs.none()), 0);
 }
 
+// Speeds of hinges behind a body with modes stand elsewhere where it has more of them: outputs of one model are read of
+// another by their hinges.
+TEST(Outputs, OfHingesBehindModesAreReadWhereAModelHasThem) {
+  const auto arm = [](int modes) {
+    return prepare(SceneValues::parse("format: withy/1\ntime: {end: 1}\nbodies:\n  arm: {type: beam, length: 1, "
+                                      "mass_per_length: 1, bending_y: {stiffness: 50, modes: " +
+                                          std::to_string(modes) + R"(}}
+  hand: {type: rigid, mass: 1, center_of_mass: [0.2, 0, 0], inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+  tool: {type: rigid, mass: 0.5, center_of_mass: [0.1, 0, 0], inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+hinges:
+  shoulder: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}
+  elbow: {type: revolute, axis: [0, 0, 1], parent: arm.tip, child: hand}
+  wrist: {type: revolute, axis: [0, 0, 1], parent: hand, child: tool}
+initial: {hinges: {wrist: {rate: [0.7]}}}
+motions:
+  a: {hinge: shoulder, type: quintic, to: 1, duration: 2}
+  b: {hinge: elbow, type: quintic, to: 1, duration: 2}
+)",
+                                      "arm.yaml"),
+                   plugins());
+  };
+  const Prepared one = arm(1);
+  const Outputs outputs(one.model(), {"elbow.motion_effort", "wrist.rate"});
+  for (const int modes : {1, 2, 4}) {
+    const Prepared other = arm(modes);
+    State state = other.scene.initial;
+    state.time = 0.3;
+    other.model().prescribe(state);
+    OutputReader reader(outputs, other.model(), *other.equations, {});
+    const std::vector<double> read = reader.read(state);
+    std::vector<double> efforts(other.model().layout().speeds);
+    Work work = other.equations->make_work();
+    ASSERT_TRUE(other.equations->motion_efforts(state.time, state.y, efforts, work).ok());
+    const double effort = efforts[other.model().layout().hinges[1].speed];
+    EXPECT_GT(std::abs(effort), 1e-3) << "at modes there is none";
+    EXPECT_EQ(read[0], effort) << modes;
+    EXPECT_EQ(read[1], 0.7) << modes;
+  }
+}
+
 Prepared blade() { return prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml"), plugins()); }
 
 TEST(Accuracy, IsOfEachOutputsOwnRange) {
