@@ -1,5 +1,6 @@
 #include "withy/results/run_json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "withy/core/model/event_plan.hpp"
@@ -77,7 +78,7 @@ Json statistics_json(const std::vector<OutputStatistics>& outputs) {
                    {"max", {{"value", o.greatest}, {"t", o.greatest_at}}},
                    {"mean", o.mean()},
                    {"rms", o.rms()},
-                   {"integral", o.integral}};
+                   {"integral", std::isfinite(o.least) ? o.integral : o.least}};
   return all;
 }
 

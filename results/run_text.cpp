@@ -112,7 +112,11 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
 
 std::string extremes_text(const nlohmann::ordered_json& outputs) {
   constexpr double small = 0.01;
-  const auto reach = [](const nlohmann::ordered_json& o) {
+  const auto ever = [](const nlohmann::ordered_json& o) {
+    return o["min"]["value"].is_number() && std::isfinite(o["min"]["value"].get<double>());
+  };
+  const auto reach = [&](const nlohmann::ordered_json& o) {
+    if (!ever(o)) return 0.0;
     return std::max(std::abs(o["min"]["value"].get<double>()), std::abs(o["max"]["value"].get<double>()));
   };
   const auto kin_of = [](const std::string& name, const nlohmann::ordered_json& o) {
@@ -126,6 +130,10 @@ std::string extremes_text(const nlohmann::ordered_json& outputs) {
   std::string out;
   std::size_t left_out = 0;
   for (const auto& [name, o] : outputs.items()) {
+    if (!ever(o)) {
+      out += fmt::format("{:<{}} it never was a number\n", "range of " + name, width);
+      continue;
+    }
     if (reach(o) < small * greatest[kin_of(name, o)]) {
       ++left_out;
       continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace withy {
 namespace {
@@ -41,7 +42,8 @@ StatisticsWatch::StatisticsWatch(const std::vector<SensorNode>& sensors, const s
     for (const Column& c : columns_of(node)) {
       if (asked) {
         columns_.push_back(column);
-        results_.push_back({.name = c.name, .unit = c.unit});
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        results_.push_back({.name = c.name, .unit = c.unit, .least = none, .greatest = none});
       }
       ++column;
     }
@@ -52,65 +54,68 @@ StatisticsWatch::StatisticsWatch(const std::vector<SensorNode>& sensors, const s
   between_.y.resize(equations.size());
 }
 
-bool StatisticsWatch::read(const State& state, std::vector<double>& values) {
-  if (!reader_.read(state, all_)) return false;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    values[i] = all_[columns_[i]];
-    if (!std::isfinite(values[i])) return false;
-  }
-  return true;
+void StatisticsWatch::read(const State& state, std::vector<double>& values) {
+  const bool any = reader_.read(state, all_);
+  for (std::size_t i = 0; i < columns_.size(); ++i)
+    values[i] = any ? all_[columns_[i]] : std::numeric_limits<double>::quiet_NaN();
 }
 
-bool StatisticsWatch::read_end(const State& state, std::vector<double>& values) {
+void StatisticsWatch::read_end(const State& state, std::vector<double>& values) {
   if (!std::binary_search(jumps_.begin(), jumps_.end(), state.time)) return read(state, values);
   between_ = state;
   between_.time = std::nextafter(state.time, from_);
-  return read(between_, values);
+  read(between_, values);
 }
 
 void StatisticsWatch::note(double t, const std::vector<double>& values) {
   for (std::size_t i = 0; i < results_.size(); ++i) {
     OutputStatistics& r = results_[i];
-    if (!any_ || values[i] < r.least) r.least = values[i], r.least_at = t;
-    if (!any_ || values[i] > r.greatest) r.greatest = values[i], r.greatest_at = t;
+    if (!std::isfinite(values[i])) continue;
+    if (!(values[i] >= r.least)) r.least = values[i], r.least_at = t;
+    if (!(values[i] <= r.greatest)) r.greatest = values[i], r.greatest_at = t;
   }
-  any_ = true;
 }
 
 void StatisticsWatch::begin_at(const State& state) {
   from_ = state.time;
-  known_ = read(state, within_.front());
-  if (known_) note(from_, within_.front());
+  read(state, within_.front());
+  note(from_, within_.front());
 }
 
 void StatisticsWatch::observe(const Stepper& stepper) {
   const double to = stepper.state().time, h = to - from_;
-  bool good = known_ && h > 0;
-  for (std::size_t k = 1; k + 1 < places && good; ++k) {
-    between_.time = from_ + h * static_cast<double>(k) / (places - 1);
-    stepper.interpolate(between_.time, between_.y);
-    good = read(between_, within_[k]);
-  }
-  good = good && read_end(stepper.state(), within_.back());
-  if (!good) {
+  if (!(h > 0)) {
     begin_at(stepper.state());
     return;
   }
-  constexpr std::array<double, places> boole{7 / 90.0, 32 / 90.0, 12 / 90.0, 32 / 90.0, 7 / 90.0};
-  for (std::size_t k = 0; k < places; ++k) {
-    note(from_ + h * static_cast<double>(k) / (places - 1), within_[k]);
-    for (std::size_t i = 0; i < results_.size(); ++i) {
-      results_[i].integral += h * boole[k] * within_[k][i];
-      results_[i].square += h * boole[k] * within_[k][i] * within_[k][i];
-    }
+  for (std::size_t k = 1; k + 1 < places; ++k) {
+    between_.time = from_ + h * static_cast<double>(k) / (places - 1);
+    stepper.interpolate(between_.time, between_.y);
+    read(between_, within_[k]);
   }
+  read_end(stepper.state(), within_.back());
+  for (std::size_t k = 0; k < places; ++k) note(from_ + h * static_cast<double>(k) / (places - 1), within_[k]);
   for (std::size_t i = 0; i < results_.size(); ++i) {
-    results_[i].span += h;
+    const bool whole =
+        std::all_of(within_.begin(), within_.end(), [i](const auto& at) { return std::isfinite(at[i]); });
+    if (!whole) continue;
+    add_step(i, h);
     refine(stepper, i, 1);
     refine(stepper, i, -1);
   }
   within_.front() = within_.back();
   from_ = to;
+}
+
+void StatisticsWatch::add_step(std::size_t result, double h) {
+  constexpr std::array<double, places> boole{7 / 90.0, 32 / 90.0, 12 / 90.0, 32 / 90.0, 7 / 90.0};
+  OutputStatistics& r = results_[result];
+  for (std::size_t k = 0; k < places; ++k) {
+    const double x = within_[k][result];
+    r.integral += h * boole[k] * x;
+    r.square += h * boole[k] * x * x;
+  }
+  r.span += h;
 }
 
 /// Looks for a greatest (sign 1) or least (−1) value between the places.
@@ -131,7 +136,8 @@ void StatisticsWatch::refine(const Stepper& stepper, std::size_t result, double 
     if (at == t[0] || at == t[1] || at == t[2] || sign * along(t, x, at) <= known) return;
     between_.time = at;
     stepper.interpolate(at, between_.y);
-    if (!read(between_, now_)) return;
+    read(between_, now_);
+    if (!std::isfinite(now_[result])) return;
     note(at, now_);
     // The point farthest from the new one goes.
     const std::size_t out = at - t[0] > t[2] - at ? 0 : 2;
@@ -153,8 +159,6 @@ void StatisticsWatch::remember(Memory& memory) {
       memory(*number);
   memory(within_.front());
   memory(from_);
-  memory(known_);
-  memory(any_);
 }
 
 }  // namespace withy

@@ -11,7 +11,8 @@
 
 namespace withy {
 
-/// What one number of an output was over a run.
+/// What one number of an output was over a run, without the steps in which it was none somewhere. Where it never was,
+/// extremes, mean and rms are not numbers.
 struct OutputStatistics {
   std::string name, unit;
   double least = 0, least_at = 0;        ///< and its time [s]
@@ -41,11 +42,12 @@ class StatisticsWatch final : public StepWatch {
 
  private:
   static constexpr std::size_t places = 5;
-  /// Sets one number a result; false where the state has none.
-  bool read(const State& state, std::vector<double>& values);
+  /// Sets one number a result, not a number where the state has none.
+  void read(const State& state, std::vector<double>& values);
   /// The same at the end of a step, which no jump there belongs to.
-  bool read_end(const State& state, std::vector<double>& values);
+  void read_end(const State& state, std::vector<double>& values);
   void note(double t, const std::vector<double>& values);
+  void add_step(std::size_t result, double h);
   void refine(const Stepper& stepper, std::size_t result, double sign);
 
   SensorReader reader_;
@@ -55,8 +57,6 @@ class StatisticsWatch final : public StepWatch {
   std::vector<double> all_, now_;
   std::array<std::vector<double>, places> within_;  ///< the first is that of where the step began
   double from_ = 0;                                 ///< [s], where the next step begins
-  bool known_ = false;                              ///< the numbers there are
-  bool any_ = false;                                ///< some numbers have been
   State between_;
 };
 

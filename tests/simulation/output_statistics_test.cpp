@@ -72,6 +72,31 @@ TEST(OutputStatistics, DoNotDependOnTheRowsAndChangeNothing) {
   }
 }
 
+// What is no number in some steps, or never one, says so of itself alone.
+TEST(OutputStatistics, OfOneThatIsNoNumberLeaveTheOthersAsTheyAre) {
+  const test::LoadedScene s(swinging_block(), {"outputs.half={type: expression, value: sqrt(place.position)}",
+                                               "outputs.never={type: expression, value: sqrt(place.position - 5)}"});
+  StatisticsWatch watch(s.scene.outputs, {"place", "half", "never"}, *s.equations, discontinuities(*s.scene.model));
+  RunOptions options;
+  options.end = end_of_run(s.scene);
+  options.output = s.scene.output;
+  EXPECT_EQ(simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options, {}, &watch).status,
+            RunStatus::completed);
+  const std::vector<OutputStatistics> alone = statistics_of(test::LoadedScene(swinging_block()));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(watch.results()[i].least, alone[i].least);
+    EXPECT_EQ(watch.results()[i].greatest, alone[i].greatest);
+    EXPECT_EQ(watch.results()[i].integral, alone[i].integral);
+    EXPECT_EQ(watch.results()[i].span, alone[i].span);
+  }
+  const OutputStatistics &half = watch.results()[3], &never = watch.results()[4];
+  EXPECT_NEAR(half.greatest, std::sqrt(0.3), 1e-9);
+  EXPECT_GE(half.least, 0);
+  EXPECT_NEAR(half.span, 7.3 / 2, 0.5);
+  EXPECT_TRUE(std::isnan(never.least) && std::isnan(never.greatest) && std::isnan(never.mean()) &&
+              std::isnan(never.rms()));
+}
+
 // An effort that is held jumps at the samples: what is on either side of one counts.
 TEST(OutputStatistics, SeeBothSidesOfJumps) {
   const test::LoadedScene s(
