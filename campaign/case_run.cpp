@@ -17,12 +17,12 @@
 namespace withy::campaign {
 namespace {
 
-/// Numbers that are none end a case as what they are.
-void check_finite(CaseResult& result) {
-  for (const double x : result.numbers) {
-    if (std::isfinite(x)) continue;
+/// Numbers that are none end a case as what they are, with their name.
+void check_finite(CaseResult& result, const Plan& plan) {
+  for (std::size_t i = 0; i < result.numbers.size(); ++i) {
+    if (std::isfinite(result.numbers[i])) continue;
     result.status = name(RunStatus::diverged);
-    result.message = "a kept result is not finite";
+    result.message = "the run completes, but its " + kept_columns(plan)[i] + " is not finite";
     result.numbers.clear();
     return;
   }
@@ -111,7 +111,7 @@ void CaseRun::run(const EquationsOfMotion& equations, const study::Control& cont
     result_.status = name(summary.status);
     if (result_.completed()) {
       result_.numbers = kept_->numbers(summary, statistics_);
-      check_finite(result_);
+      check_finite(result_, plan_);
       // Times that an event has left out have no numbers.
       const std::vector<double> histories = kept_->histories();
       if (result_.completed()) result_.numbers.insert(result_.numbers.end(), histories.begin(), histories.end());

@@ -1,6 +1,7 @@
 #include "withy/campaign/collect.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 #include "withy/campaign/histories_picture.hpp"
 #include "withy/results/csv.hpp"
 #include "withy/results/output_file.hpp"
-#include "withy/results/run_command.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -20,7 +20,9 @@ constexpr std::size_t most_numbers = 8'000'000;  // in memory
 /// A file that takes its name when it is whole.
 class Table {
  public:
-  explicit Table(std::filesystem::path path) : path_(std::move(path)), part_(path_.string() + ".part"), file_(part_) {}
+  /// Each process has a part of its own: two may collect at once.
+  explicit Table(std::filesystem::path path)
+      : path_(std::move(path)), part_(fmt::format("{}.part{}", path_.string(), ::getpid())), file_(part_) {}
   void line(const std::string& text) { file_.write(text + '\n'); }
   void finish() {
     file_.close();
@@ -43,7 +45,11 @@ std::string joined(const std::vector<std::string>& cells) {
   return text;
 }
 
-std::string cells_of(const Estimate& e) { return fmt::format("{},{},{}", e.value, e.low, e.high); }
+/// The value and the ends of its interval; nothing for an end that is not known.
+std::string cells_of(const Estimate& e) {
+  const auto end = [](double x) { return std::isfinite(x) ? fmt::format(",{}", x) : std::string(","); };
+  return fmt::format("{}", e.value) + end(e.low) + end(e.high);
+}
 
 class Collector {
  public:
@@ -98,9 +104,7 @@ class Collector {
   }
 
   /// The command that runs a case alone.
-  std::string repeat_of(std::uint64_t index) const {
-    return command_with("withy sweep case", about_.plan, about_.plugin_folders) + fmt::format(" {}", index);
-  }
+  std::string repeat_of(std::uint64_t index) const { return case_command(about_) + fmt::format(" {}", index); }
 
   /// Some of the numbers of the completed cases among these, where they have them.
   std::vector<std::vector<double>> samples(std::uint64_t begin, std::uint64_t end, std::size_t first,

@@ -6,6 +6,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -76,8 +77,9 @@ Estimate quantile_estimate(Sorted& sorted, double p) {
   const boost::math::binomial_distribution<double, Up> below(n, p);
   const double low = boost::math::quantile(below, tail);
   const double high = boost::math::quantile(boost::math::complement(below, tail));
-  const auto at = [&](double k) { return sorted[static_cast<std::size_t>(std::clamp(k, 0.0, n - 1))]; };
-  return {quantile_of(sorted, p), at(low - 1), at(high)};
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  return {quantile_of(sorted, p), low >= 1 ? sorted[static_cast<std::size_t>(low - 1)] : -unknown,
+          high < n ? sorted[static_cast<std::size_t>(high)] : unknown};
 }
 
 /// a/b of the means of two columns; the deviation of the ratio is that of its linearization (a_j − r b_j)/b.

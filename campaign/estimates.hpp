@@ -18,7 +18,7 @@ struct Statistics {
   double mean = 0, deviation = 0, least = 0, greatest = 0;
   std::optional<Estimate> mean_interval;  ///< by Student's t; of samples of two or more
   /// Quantiles at 5, 50 and 95 %, with intervals by order statistics, which ask for no distribution; an end that the
-  /// sample is too small for is its least or greatest number.
+  /// sample is too small for is infinite.
   std::vector<Estimate> quantiles;
 };
 inline constexpr double shares_of_quantiles[] = {0.05, 0.5, 0.95};

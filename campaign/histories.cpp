@@ -11,10 +11,10 @@ constexpr double one_time = 1e-9;
 
 }  // namespace
 
-std::vector<double> history_times(double end, double every) {
+std::vector<double> history_times(double start, double end, double every) {
   std::vector<double> times;
-  const auto steps = static_cast<std::size_t>(std::ceil(end / every * (1 - one_time)));
-  for (std::size_t i = 0; i < steps; ++i) times.push_back(static_cast<double>(i) * every);
+  const auto steps = static_cast<std::size_t>(std::ceil((end - start) / every * (1 - one_time)));
+  for (std::size_t i = 0; i < steps; ++i) times.push_back(start + static_cast<double>(i) * every);
   times.push_back(end);
   return times;
 }

@@ -16,8 +16,8 @@ struct HistoryPlan {
   double every = 0;             ///< [s]; 0: as the scene's outputs
   std::vector<double> times;    ///< [s]
 };
-/// From 0 to the end, which is one of them. \param every above 0 [s]
-std::vector<double> history_times(double end, double every);
+/// From the start of a run to its end, which both are among them. \param every above 0 [s]
+std::vector<double> history_times(double start, double end, double every);
 inline constexpr std::size_t most_history_times = 10'000;
 inline constexpr std::size_t most_history_numbers = 1'000'000;  ///< of a case
 

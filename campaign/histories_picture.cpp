@@ -49,6 +49,7 @@ void HistoriesPicture::add(std::uint64_t point, const std::string& values, const
     for (std::size_t i = 0; i < values.size(); ++i)
       if (values[i] != ',') at += (i > 0 && values[i - 1] == ',' && !at.empty() ? ", " : "") + values.substr(i, 1);
     Panel panel{"t [s]", name + (at.empty() ? "" : " at " + at), {numbers[0], numbers[0]}, {}};
+    panel.x_range = {t, t};
     for (const std::size_t pen : pens) panel.curves.emplace_back().pen = pen;
     picture_.panels.push_back(std::move(panel));
   }

@@ -48,11 +48,24 @@ std::vector<std::size_t> select(const Model& model, const std::vector<Column>& c
   return found;
 }
 
-std::vector<std::size_t> selected(const study::Prepared& prepared, const std::vector<Column>& columns,
-                                  const std::string& name) {
-  std::vector<std::size_t> found = select(prepared.model(), columns, name);
-  if (found.empty()) throw study::InputError("the model of this case has no " + in_quotes(name));
+[[noreturn]] void refuse(const std::string& name) {
+  throw study::InputError("the model of this case has no " + in_quotes(name));
+}
+
+/// The columns that a name stands for in the plan's own scene.
+std::vector<Column> selected(const Plan& plan, const std::string& name) {
+  const ResultColumns columns(plan.base->model(), *plan.base->equations, plan.base->scene.outputs);
+  std::vector<Column> found;
+  for (const std::size_t i : select(plan.base->model(), columns.columns(), name)) found.push_back(columns.columns()[i]);
+  if (found.empty()) refuse(name);
   return found;
+}
+
+/// Where these are among the columns of a case, which may have more.
+std::size_t place_of(const Column& wanted, const std::vector<Column>& columns) {
+  const auto at = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == wanted.name; });
+  if (at == columns.end()) refuse(column_name(wanted.name));
+  return static_cast<std::size_t>(at - columns.begin());
 }
 
 /// Where the run's monitor has the greatest size of a column: the tip's deflection of a flexible body.
@@ -89,7 +102,8 @@ double value_of(const OutputStatistics& s, const std::string& what) {
   if (what == "min") return s.least;
   if (what == "max") return s.greatest;
   if (what == "mean") return s.mean();
-  return what == "rms" ? s.rms() : s.integral;
+  if (what == "rms") return s.rms();
+  return std::isfinite(s.least) ? s.integral : s.least;
 }
 
 }  // namespace
@@ -106,17 +120,14 @@ std::string kept_problem(const study::Prepared& prepared, const std::string& nam
 }
 
 std::vector<std::string> kept_columns(const Plan& plan) {
-  const ResultColumns columns(plan.base->model(), *plan.base->equations, plan.base->scene.outputs);
   std::vector<std::string> names;
   const auto add = [&](const char* what, const std::vector<std::string>& asked) {
     for (const std::string& name : asked) {
       const std::vector<OverRun> over = over_run(*plan.base, name);
       for (const OverRun& o : over) names.push_back(fmt::format("{}.{}.{}[{}]", what, o.number, o.what, o.unit));
       if (!over.empty()) continue;
-      for (const std::size_t i : selected(*plan.base, columns.columns(), name)) {
-        const Column& c = columns.columns()[i];
+      for (const Column& c : selected(plan, name))
         names.push_back(fmt::format("{}.{}[{}]", what, column_name(c.name), c.unit.empty() ? "1" : c.unit));
-      }
     }
   };
   add("final", plan.final);
@@ -125,37 +136,37 @@ std::vector<std::string> kept_columns(const Plan& plan) {
 }
 
 std::vector<std::string> history_columns(const Plan& plan) {
-  const ResultColumns columns(plan.base->model(), *plan.base->equations, plan.base->scene.outputs);
   std::vector<std::string> names;
   for (const std::string& name : plan.history.of)
-    for (const std::size_t i : selected(*plan.base, columns.columns(), name)) {
-      const Column& c = columns.columns()[i];
+    for (const Column& c : selected(plan, name))
       names.push_back(fmt::format("{}[{}]", column_name(c.name), c.unit.empty() ? "1" : c.unit));
-    }
   return names;
 }
 
 KeptPlaces kept_places(const Plan& plan, const study::Prepared& prepared, const std::vector<Column>& columns) {
   KeptPlaces places;
   for (const std::string& name : plan.final) {
-    const std::vector<OverRun> over = over_run(prepared, name);
+    const std::vector<OverRun> over = over_run(*plan.base, name), of_case = over_run(prepared, name);
     for (const OverRun& o : over) {
+      if (std::none_of(of_case.begin(), of_case.end(), [&](const OverRun& own) { return own.number == o.number; }))
+        refuse(name);
       places.statistics.push_back({places.count++, o.number, o.what});
       if (std::find(places.watched.begin(), places.watched.end(), o.output) == places.watched.end())
         places.watched.push_back(o.output);
     }
     if (!over.empty()) continue;
-    for (const std::size_t i : selected(prepared, columns, name)) places.final.push_back({places.count++, i});
+    for (const Column& c : selected(plan, name)) places.final.push_back({places.count++, place_of(c, columns)});
   }
   for (const std::string& name : plan.peak)
-    for (const std::size_t i : selected(prepared, columns, name)) {
-      if (const auto d = deflection_of(columns[i].name))
+    for (const Column& c : selected(plan, name)) {
+      const std::size_t i = place_of(c, columns);
+      if (const auto d = deflection_of(c.name))
         places.deflections.push_back({places.count++, d->first, d->second});
       else
         places.peaks.push_back({places.count++, i});
     }
   for (const std::string& name : plan.history.of)
-    for (const std::size_t i : selected(prepared, columns, name)) places.histories.push_back(i);
+    for (const Column& c : selected(plan, name)) places.histories.push_back(place_of(c, columns));
   return places;
 }
 

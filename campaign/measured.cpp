@@ -212,7 +212,8 @@ class MeasuredReader {
       column.deviation_given = true;
     }
     if (!column.deviation_given) column.deviation = most - least;
-    if (column.deviation == 0)
+    // Of several columns those that nobody asked for are left out.
+    if (column.deviation == 0 && !wish_.outputs.empty())
       problem(1, 1,
               fmt::format("column {} does not change, so that it has no range to weigh it by: give the standard "
                           "deviation of its measurement, --deviations {}=…",
@@ -224,7 +225,11 @@ class MeasuredReader {
     if (!wish_.outputs.empty()) return;
     for (const MeasuredColumn& c : data_.columns)
       if (c.deviation == 0 && c.count() > 0) data_.ignored.push_back(c.name + " (does not change)");
+    const bool any = !data_.columns.empty();
     std::erase_if(data_.columns, [](const MeasuredColumn& c) { return c.deviation == 0 && c.count() > 0; });
+    if (any && data_.columns.empty())
+      problem(1, 1,
+              "no column changes: there is nothing to compare; give --output and --deviations of what to compare");
   }
 
   /// Names on the command line that stand for no column.

@@ -271,16 +271,23 @@ class PlanBuilder {
   void make_times() {
     HistoryPlan& history = plan_.history;
     const auto refuse = [&](const std::string& why) { reader_.key_error("/keep/history", why); };
-    for (const Axis& axis : plan_.axes)
-      if (axis.path == "time" || axis.path == "time.end")
-        return refuse(fmt::format("needs one end of all cases, and {} varies", axis.path));
+    std::vector<std::string> varied;
+    for (const Axis& axis : plan_.axes) varied.push_back(axis.path);
+    for (const Derived& derived : plan_.derived) varied.push_back(derived.path);
+    for (const std::string& path : varied) {
+      if (path == "time" || path == "time.end")
+        return refuse(fmt::format("needs one end of all cases, and {} varies", path));
+      if (path == "initial" || path == "initial.time")
+        return refuse(fmt::format("needs one start of all cases, and {} varies", path));
+    }
     const Scene& scene = plan_.base->scene;
     if (!scene.end) return refuse("needs the scene's time.end");
     const double every = history.every > 0 ? history.every : scene.output;
-    if (*scene.end / every > static_cast<double>(most_history_times))
-      return refuse(fmt::format("{:.3g} times are too many; need an `every` that gives at most {}", *scene.end / every,
+    const double start = scene.initial.time, lasts = *scene.end - start;
+    if (lasts / every > static_cast<double>(most_history_times))
+      return refuse(fmt::format("{:.3g} times are too many; need an `every` that gives at most {}", lasts / every,
                                 most_history_times));
-    history.times = history_times(*scene.end, every);
+    history.times = history_times(start, *scene.end, every);
     const std::size_t count = history_columns(plan_).size() * history.times.size();
     if (count > most_history_numbers)
       refuse(fmt::format("{} numbers a case are too many; need at most {}: fewer names or times", count,
@@ -293,7 +300,7 @@ class PlanBuilder {
       if (key != "name" && key != "scene" && key != "failures") said[key] = value_json(value);
     Scene scene = plan_.base->scene;
     scene.sources = plan_.sources;
-    return sha256(Json::array({said, lists_, withy::provenance_of(scene).fingerprint()}).dump());
+    return sha256(json_line(Json::array({said, lists_, withy::provenance_of(scene).fingerprint()})));
   }
 
   const Value& root_;

@@ -21,6 +21,7 @@
 #include "withy/results/make_folder.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/results_folder.hpp"
+#include "withy/results/run_command.hpp"
 #include "withy/scene/sha256.hpp"
 
 namespace withy::campaign {
@@ -154,6 +155,10 @@ StoreDescription description_of(const Plan& plan) {
   d.histories = history_columns(plan);
   d.times = plan.history.times;
   return d;
+}
+
+std::string case_command(const StoreDescription& about) {
+  return command_with("withy sweep case", about.plan, about.plugin_folders);
 }
 
 void write_description(const std::filesystem::path& store, const StoreDescription& about) {

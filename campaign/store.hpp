@@ -37,6 +37,8 @@ struct StoreDescription {
   [[nodiscard]] bool by_draws() const { return design == Design::product && drawn && draws > 1; }
 };
 StoreDescription description_of(const Plan& plan);
+/// The command that runs a case alone, but for the number of the case, which is to follow behind a blank.
+std::string case_command(const StoreDescription& about);
 
 /// Every so many cases of a plan: those whose number is `number` − 1 modulo `count`, `number` from 1 to `count`.
 struct Shard {

@@ -148,7 +148,7 @@ class Page {
 
   Json json() {
     read_cases();
-    Json page{{"plan", about_.plan},
+    Json page{{"command", case_command(about_)},
               {"cases", collected_.cases},
               {"done", collected_.done},
               {"failed", collected_.failed},

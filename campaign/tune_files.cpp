@@ -131,6 +131,7 @@ Picture tune_picture(const TuneResult& result, const std::string& title) {
     const ColumnFit& fit = result.columns[c];
     const Shown shown = shown_in(column.unit);
     Panel panel{"t [s]", column.name + " [" + shown.unit + "]", {1e300, -1e300}, {}, 220};
+    if (!result.data.times.empty()) panel.x_range = {result.data.times.front(), result.data.times.back()};
     panel.curves = {curve_of(result.data.times, fit.at_start, shown.factor, before_pen),
                     curve_of(result.data.times, fit.at_end, shown.factor, fitted_pen),
                     curve_of(result.data.times, column.values, shown.factor, measured_pen)};

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "withy/campaign/random.hpp"
@@ -106,6 +107,21 @@ TEST(Statistics, IntervalsAreThoseOfTheTables) {
   EXPECT_NEAR(share(0, 10).high, 0.3085, 1e-4);  // Clopper and Pearson
   EXPECT_NEAR(share(5, 10).low, 0.1871, 1e-4);
   EXPECT_FALSE(statistics({3}).mean_interval);
+}
+
+// Of n draws the greatest is below the 95 % quantile with probability 0.95^n, which is 2.5 % from 72 on.
+TEST(Statistics, SaysNoEndsThatASampleIsTooSmallFor) {
+  for (const std::size_t n : {20U, 71U, 72U}) {
+    std::vector<double> sample(n);
+    std::iota(sample.begin(), sample.end(), 1.0);
+    const std::vector<Estimate> q = statistics(sample).quantiles;
+    EXPECT_EQ(std::isfinite(q[0].low), n >= 72) << n;
+    EXPECT_EQ(std::isfinite(q[2].high), n >= 72) << n;
+    EXPECT_TRUE(std::isfinite(q[1].low) && std::isfinite(q[1].high)) << n;
+  }
+  std::vector<double> sample(72);
+  std::iota(sample.begin(), sample.end(), 1.0);
+  EXPECT_EQ(statistics(sample).quantiles[2].high, 72);
 }
 
 }  // namespace

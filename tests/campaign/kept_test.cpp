@@ -53,6 +53,38 @@ loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 30}}
   EXPECT_THROW(planned("final: [seen.rate.most]"), SceneError);
 }
 
+/// A name that stands for many columns, as that of a body for its modes, stands for those of the plan's scene in every
+/// case: one with more modes keeps no others, one with fewer says what it lacks, and every number is under its own
+/// name.
+TEST(Sweeps, KeepTheSameColumnsOfCasesThatHaveOthers) {
+  const PlanFolder folder;
+  folder.write("boom.yaml", R"(format: withy/1
+time: {end: 0.5, output: 0.1}
+gravity: [0, -9.81, 0]
+bodies: {boom: {type: beam, length: 2, mass_per_length: 1, bending_y: {stiffness: 900, modes: 2}}}
+hinges: {pin: {type: revolute, axis: [0, 0, 1], parent: world, child: boom}}
+)");
+  folder.write("modes.yaml",
+               "format: withy-sweep/1\nscene: boom.yaml\nvary: {bodies.boom.bending_y.modes: {grid: [2, 3, 1]}}\n"
+               "keep: {final: [boom, pin.rate], peak: [boom], history: [boom, pin]}\n");
+  const Plan plan = read_plan((folder / "modes.yaml").string(), plugins());
+  EXPECT_TRUE(run(folder, plan, "modes", {1, 1, 1, {}}).whole());
+  std::istringstream table(table_of(folder, "modes"));
+  std::string head, rows[3];
+  std::getline(table, head);
+  for (std::string& row : rows) std::getline(table, row);
+  const auto number = [&](const std::string& row, const std::string& column) {
+    const auto before = std::count(head.begin(), head.begin() + static_cast<std::ptrdiff_t>(head.find(column)), ',');
+    std::size_t at = 0;
+    for (std::ptrdiff_t i = 0; i < before; ++i) at = row.find(',', at) + 1;
+    return std::stod(row.substr(at));
+  };
+  ASSERT_THAT(head, HasSubstr("final.boom.bending_y.2"));
+  for (const char* column : {"final.pin.rate[", "final.boom.tip.x[", "peak.boom.tip.y["})
+    EXPECT_NEAR(number(rows[1], column), number(rows[0], column), 0.02 * std::abs(number(rows[0], column))) << column;
+  EXPECT_THAT(folder.read("modes/failed.csv"), HasSubstr("the model of this case has no \"\"boom.bending_y.2\"\""));
+}
+
 /// Percentiles over time are those of the closed form x = x0 cos 3t at every time, whatever the lanes; where an event
 /// ends cases they are of those that go on.
 TEST(Sweeps, KeepHistoriesAndTheirPercentilesOverTheCases) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "withy/campaign/cases.hpp"
+#include "withy/campaign/histories.hpp"
 #include "withy/campaign/kept.hpp"
 #include "withy/tests/campaign/plan_fixture.hpp"
 
@@ -108,6 +109,15 @@ TEST(Plans, KeepHistoriesAtTimesThatAllCasesShare) {
     EXPECT_THAT(folder.errors(vary + "keep: {history: " + history + "}\n"), HasSubstr(why));
   EXPECT_THAT(folder.errors("vary: {time.end: {grid: [1, 2]}}\nkeep: {history: [pivot]}\n"),
               HasSubstr("needs one end of all cases, and time.end varies"));
+  EXPECT_THAT(folder.errors(vary + "derived: {time.end: \"bodies.rod.mass\"}\nkeep: {history: [pivot]}\n"),
+              HasSubstr("needs one end of all cases, and time.end varies"));
+  EXPECT_THAT(folder.errors("vary: {initial.time: {grid: [0, 0.1]}}\nkeep: {history: [pivot]}\n"),
+              HasSubstr("needs one start of all cases, and initial.time varies"));
+}
+
+TEST(Histories, BeginWhereRunsDo) {
+  EXPECT_THAT(history_times(1, 1.5, 0.2), ElementsAre(1, 1.2, 1.4, 1.5));
+  EXPECT_THAT(history_times(-0.5, 0, 0.25), ElementsAre(-0.5, -0.25, 0));
 }
 
 TEST(Plans, DeriveValuesByFormulasOfWhatVariesAndOfTheScene) {

@@ -30,6 +30,14 @@ TEST(Sweeps, RepeatWhatIsDamagedAndNothingElse) {
   EXPECT_EQ(table_of(folder, "store"), table);
 }
 
+/// Tables and pages print it to be typed.
+TEST(Sweeps, TheCommandOfACaseIsQuotedAndNamesThePlugins) {
+  StoreDescription about;
+  about.plan = "my plan.yaml";
+  about.plugin_folders = {"more plugins"};
+  EXPECT_EQ(case_command(about), "withy sweep case 'my plan.yaml' --plugins 'more plugins'");
+}
+
 TEST(Sweeps, ADamagedDescriptionIsNoticedAndCostsNoCase) {
   const PlanFolder folder;
   const Plan plan = folder.plan(twelve);

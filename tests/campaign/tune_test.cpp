@@ -109,6 +109,25 @@ TEST(Tune, ADeviationIsThatOfTheResultOfItsName) {
   EXPECT_EQ(tuned({}, {"slide"}).data.columns.size(), 1U);
 }
 
+// Tables of runs have columns that stay as they are, as momenta of what is held: they weigh nothing, and say so.
+TEST(Tune, ColumnsThatDoNotChangeAreLeftOutUnlessAskedFor) {
+  const TuneFolder folder;
+  const Truth truth;
+  std::string text = "t[s],slide,angular_momentum.z\n";
+  for (std::uint64_t i = 0; i < 160; ++i)
+    text += fmt::format("{},{},0\n", 0.0249 * static_cast<double>(i), truth.at(0.0249 * static_cast<double>(i)));
+  folder.write("data.csv", text);
+  TuneQuestion question;
+  question.parameters = three;
+  const TuneResult result = folder.tuned(question);
+  ASSERT_TRUE(result.converged()) << result.trouble;
+  EXPECT_NEAR(result.parameters[0].value, truth.stiffness, 1e-3);
+  EXPECT_EQ(result.data.columns.size(), 1U);
+  EXPECT_EQ(result.data.ignored, (std::vector<std::string>{"angular_momentum.z (does not change)"}));
+  question.outputs = {"slide", "angular_momentum.z"};
+  EXPECT_THROW(folder.tuned(question), std::runtime_error);
+}
+
 TEST(Tune, FindsWhatMadeTheDataAndItsCovarianceIsThatOfManyFits) {
   const TuneFolder folder;
   const Truth truth;
