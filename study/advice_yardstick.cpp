@@ -59,6 +59,7 @@ class YardstickSearch {
   [[nodiscard]] ReferenceGoal goal();
   [[nodiscard]] ReferenceFound search(const ReferenceGoal& goal);
   void explain(const ReferenceFound& found);
+  void explain_bending(const Reference& r);
   void tell(const Reference& r);
   [[nodiscard]] double left() const;
   [[nodiscard]] bool affordable(const Walk& so_far, double whole);
@@ -113,7 +114,11 @@ ReferenceFound YardstickSearch::search(const ReferenceGoal& goal) {
 std::vector<Reference> YardstickSearch::find() {
   ReferenceGoal goal = this->goal();
   const bool modal = candidates_.modes.back() > 0;
+  const auto bent_too_far = [&](const Reference& r) {
+    return r.third_order > policy::last_reference_use * accuracy_.share.value_or(policy::no_accuracy);
+  };
   goal.enough = [&](const Reference& r) {
+    if (bent_too_far(r)) return true;  // more modes would not help
     const double use = own_use(r);
     least_use_ = std::min(least_use_, use);
     tell(r);
@@ -129,6 +134,10 @@ std::vector<Reference> YardstickSearch::find() {
   };
   ReferenceFound found = search(goal);
   advice_.interrupted = found.interrupted;
+  if (found.reference && bent_too_far(*found.reference)) {
+    explain_bending(*found.reference);
+    return std::move(found.runs);
+  }
   const double nearest_use = found.nearest ? own_use(*found.nearest) : std::numeric_limits<double>::infinity();
   if (!found.reference && nearest_use > policy::last_reference_use) explain(found);
   if (!found.reference && nearest_use < policy::any_reference_use) found.reference = std::move(found.nearest);
@@ -211,6 +220,18 @@ void YardstickSearch::explain(const ReferenceFound& found) {
   if (!found.trouble.empty())
     advice_.trouble +=
         (found.unaffordable ? ". A finer one costs too much: " : ". There is no finer one: ") + found.trouble;
+}
+
+/// Why what is offered is no truth for a body that bends so far.
+void YardstickSearch::explain_bending(const Reference& r) {
+  const double use = r.third_order / accuracy_.share.value_or(policy::no_accuracy) / policy::last_reference_use;
+  const bool askable = use * accuracy_.share.value_or(0) < policy::no_accuracy;
+  advice_.trouble = fmt::format(
+      "no reference is exact enough to measure against: deflections of {:.2g} of a body's length are beyond what {} is "
+      "good for, about {:.2g} % of their range, and no kinematics is offered that is better. What to do: {}make the "
+      "body a beam, which has 'exact', or one in segments; or ask for a shorter time (--set time.end=...)",
+      r.deflection, r.point.formulation, 100 * r.third_order,
+      accuracy_.share && askable ? fmt::format("ask for --accuracy {}; ", accuracy_.times(use).option()) : "");
 }
 
 /// How far the truth is known by now, where that is better than what was told before.

@@ -73,15 +73,20 @@ std::optional<AgainstNext> deflections_against_next(const Configuration& configu
     against.problem = no_steady_state(there, found);
     return against;
   }
+  // Rounding of what stays straight is no deflection.
+  constexpr double straight = 1e-9;
   double greatest = 0;
   std::vector<std::pair<double, std::string>> differences;
-  for (const Tip& tip : tips(prepared.model())) {
+  for (const Tip& tip : measured_ends(prepared.model())) {
     if (!tip.flexible) continue;
     const auto ours = deflection(*prepared.equations, steady.state.y, tip);
     const auto theirs = deflection(*up.equations, found.state.y, tip);
+    if (std::max(std::hypot(ours[0], ours[1], ours[2]), std::hypot(theirs[0], theirs[1], theirs[2])) <=
+        straight * tip.length)
+      continue;
     greatest = std::max(greatest, std::hypot(theirs[0], theirs[1], theirs[2]));
     differences.emplace_back(std::hypot(ours[0] - theirs[0], ours[1] - theirs[1], ours[2] - theirs[2]),
-                             tip.body + ".tip");
+                             tip.body + '.' + tip.station);
   }
   for (const auto& [difference, tip] : differences) raise(against, greatest > 0 ? difference / greatest : 0, tip);
   return against;

@@ -110,6 +110,17 @@ void check(const Axes& axes, Registry& registry) {
 
 Axes usual_axes() { return {{}, {}, {}, {}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, {}}; }
 
+Axes trade_axes(Axes asked, const Scene& scene, Registry& registry) {
+  check_axes(asked);
+  if (asked.formulations.empty()) asked.formulations = studied_formulations(registry);
+  if (asked.families.empty()) asked.families = {""};
+  if (asked.modes.empty()) asked.modes = {1, 2, 3};
+  if (scene.modes.empty()) asked.modes = {0};
+  if (asked.integrators.empty()) asked.integrators = {"dopri5", "imex"};
+  if (asked.tolerances.empty()) asked.tolerances = {1e-4, 1e-6};
+  return asked;
+}
+
 Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes asked) {
   Candidates c{std::move(asked), {}, {}};
   if (c.modes.empty()) {

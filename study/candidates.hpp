@@ -23,6 +23,10 @@ struct Candidates : Axes {
 /// where they are installed.
 Axes usual_axes();
 
+/// Those of a trade where nothing else is asked: formulations that take part in studies, the scene's families, 1 to 3
+/// modes where bodies can have others, `dopri5` and `imex` at 1e-4 and 1e-6. \throws InputError as check_axes()
+Axes trade_axes(Axes asked, const Scene& scene, Registry& registry);
+
 /// The axes without what means nothing for the scene, families of bending added where they mean the same beams.
 /// \param asked no families: the scene's, and another where it means the same beams
 /// \throws InputError where a value cannot be, or is `inconsistent`.

@@ -166,7 +166,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.samples = summary.validity.samples;
   c.bodies = summary.validity.bodies;
   for (BodyValidity& b : c.bodies)
-    if (bends_within_tolerance(scene, b, summary)) b.highest.clear();
+    if (needs_no_modes(scene, b, summary)) b.highest.clear();
   if (evidence.beyond != nullptr) c.against = evidence.beyond->formulation;
   c.neglected = summary.validity.neglected;
   c.estimate = std::move(evidence.estimate);

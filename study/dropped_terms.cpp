@@ -17,12 +17,15 @@ std::vector<Term> dropped_groups(const Prepared& prepared) {
     if (body.terms) return {};
   const Terms terms = prepared.scene.formulation->terms();
   if (terms.truncation == Truncation::ruthless)
-    return {Term::inertia_linear,  Term::inertia_quadratic,  Term::inertia_higher,
-            Term::velocity_linear, Term::velocity_quadratic, Term::velocity_higher};
+    return {Term::inertia_linear,     Term::inertia_quadratic, Term::inertia_higher,  Term::velocity_linear,
+            Term::velocity_quadratic, Term::velocity_higher,   Term::weight_linear,   Term::weight_quadratic,
+            Term::weight_higher,      Term::loads_linear,      Term::loads_quadratic, Term::loads_higher};
   if (terms.truncation != Truncation::strict || !terms.products_of_speeds) return {};
   if (terms.strain == StrainOrder::linear)
-    return {Term::inertia_quadratic, Term::inertia_higher, Term::velocity_quadratic, Term::velocity_higher};
-  if (terms.strain == StrainOrder::quadratic) return {Term::inertia_higher, Term::velocity_higher};
+    return {Term::inertia_quadratic, Term::inertia_higher, Term::velocity_quadratic, Term::velocity_higher,
+            Term::weight_quadratic,  Term::weight_higher,  Term::loads_quadratic,    Term::loads_higher};
+  if (terms.strain == StrainOrder::quadratic)
+    return {Term::inertia_higher, Term::velocity_higher, Term::weight_higher, Term::loads_higher};
   return {};
 }
 
@@ -45,8 +48,7 @@ class Looks {
         beyond_(beyond),
         groups_(groups),
         rates_(prepared.equations->size()),
-        work_(prepared.equations->make_work()),
-        beyond_work_(beyond.equations->make_work()) {
+        work_(prepared.equations->make_work()) {
     for (const char* id : {"ruthless", "inconsistent", "consistent", "quadratic"})
       compiled_.push_back(compile_throughout(prepared, registry, id));
     const State& start = prepared.scene.initial;
@@ -58,9 +60,8 @@ class Looks {
     const Layout& layout = prepared_.model().layout();
     if (!prepared_.equations->derivatives(state.time, state.y, rates_, work_).ok()) return {};
     const auto a = std::span<const double>(rates_).subspan(layout.positions, layout.speeds);
-    std::vector<double> missing(layout.speeds), ours(layout.speeds);
-    beyond_.equations->inverse_dynamics(state.y, a, missing, beyond_work_);
-    prepared_.equations->inverse_dynamics(state.y, a, ours, work_);
+    std::vector<double> missing = force_balance(*beyond_.equations, state, a);
+    const std::vector<double> ours = force_balance(*prepared_.equations, state, a);
     for (std::size_t i = 0; i < missing.size(); ++i) missing[i] -= ours[i];
     const TermLedger ledger(*compiled_[0].model, {compiled_[0].equations.get(), compiled_[1].equations.get(),
                                                   compiled_[2].equations.get(), compiled_[3].equations.get()});
@@ -81,7 +82,7 @@ class Looks {
   const std::vector<CoordinateGroup>& groups_;
   std::vector<Beyond> compiled_;  ///< what terms are the differences of
   std::vector<double> inertias_, rates_;
-  Work work_, beyond_work_;
+  Work work_;
 };
 
 /// The integral over time by the trapezoidal rule, and which term is the greatest.

@@ -17,9 +17,9 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
   const TurningModes turn = turning_modes(c, state, {});
   found.stays = stays_steady(c.dynamics(), tangents, state, c.held()) && turn.check.steady && turn.uneven.empty();
   found.problem = no_steady_state(c, found.steady);
-  for (const Tip& tip : tips(c.prepared().model())) {
+  for (const Tip& tip : measured_ends(c.prepared().model())) {
     if (tip.flexible)
-      found.deflections.emplace_back(tip.body + ".tip", deflection(*c.prepared().equations, state.y, tip));
+      found.deflections.emplace_back(tip.body + '.' + tip.station, deflection(*c.prepared().equations, state.y, tip));
   }
   if (found.steady.converged) found.bent = bent_text(c, state);
   found.against = deflections_against_next(c, found.steady, holding, registry);

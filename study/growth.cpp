@@ -13,6 +13,7 @@
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/measured_place.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/felt_motion.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
@@ -20,7 +21,7 @@
 namespace withy::study {
 namespace {
 
-/// What bends a body by its own length, at its measured station: by its static stiffness there.
+/// What bends a body by its own length, where it is measured: by its static stiffness there.
 struct Strength {
   std::size_t body = 0;
   double force = std::numeric_limits<double>::infinity();   ///< [N]
@@ -33,10 +34,10 @@ Strength weakest_body(const Model& model) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const Body& body = *model.bodies()[b].body;
     const ModalShape& shape = body.shape();
-    const auto station = body.station(body.measured_station());
+    const auto place = measured_place(body);
     const Eigen::LLT<Eigen::MatrixXd> factors(shape.stiffness);
-    if (shape.modes() == 0 || !station || !(shape.length > 0) || factors.info() != Eigen::Success) continue;
-    const Eigen::Matrix3d give = station->phi * factors.solve(station->phi.transpose());
+    if (shape.modes() == 0 || !place || !(shape.length > 0) || factors.info() != Eigen::Success) continue;
+    const Eigen::Matrix3d give = place->at.phi * factors.solve(place->at.phi.transpose());
     const double most = give.diagonal().maxCoeff();
     if (!(most > 0) || shape.length * shape.length / most >= weakest.moment) continue;
     weakest = {b, shape.length / most, shape.length * shape.length / most};
@@ -121,11 +122,12 @@ std::string physical_cause(const Prepared& prepared, const RunSummary& summary) 
   const double ahead = summary.status == RunStatus::step_underflow ? summary.steps.largest_step : 0;
   std::string text = wild_load(prepared, state, {state.time, summary.reached, summary.reached + ahead});
   text += emptied_hinges(prepared, state);
-  const std::vector<BodyMotion> felt = felt_motions(model, equations, state, motion.bodies());
+  FeltMotion felt(model, equations);
+  felt.update(state, motion.bodies());
   for (const BodyValidity& b : summary.validity.bodies) {
     const auto index = static_cast<std::size_t>(model.body(b.name));
     const double rate = b.fundamental > 0 ? motion.bodies()[index].rate.norm() / b.fundamental : 0;
-    const double buckling = -MotionStiffness(model, index).evaluate(felt).least;
+    const double buckling = -MotionStiffness(model, index).evaluate(felt.bodies(), felt.at_frames()).least;
     if (rate >= 1)
       text += fmt::format(" There '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s{}.", b.name,
                           rate, b.fundamental,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/measured_place.hpp"
 #include "withy/core/simulation/validity_limits.hpp"
 
 namespace withy::study {
@@ -11,8 +12,11 @@ namespace {
 /// Of the elastic energy of a family: what its highest mode may have before the next one is missed.
 constexpr double highest_mode_limit = 0.1;
 
-/// Modes in one direction alone: taken as the plane of rotation.
-bool one_direction(const BodyValidity& body) { return body.highest.size() == 1; }
+/// Modes in one direction alone: taken as the plane of rotation. What a plate or a body of a file bends like is not
+/// said.
+bool one_direction(const BodyValidity& body) {
+  return body.highest.size() == 1 && body.highest.front().family.starts_with("bending_");
+}
 
 void add_body(std::vector<Indicator>& all, const Scene& scene, const BodyValidity& b, const Terms& own,
               const RunSummary& summary) {
@@ -26,7 +30,7 @@ void add_body(std::vector<Indicator>& all, const Scene& scene, const BodyValidit
   if (d != summary.peak_deflection_ratio.end() && own.strain != StrainOrder::exact)
     all.push_back({deflection_name(b) + " of '" + b.name + "' over its length", d->second, deflection_limit,
                    "deflections are not small"});
-  if (bends_within_tolerance(scene, b, summary)) return;
+  if (needs_no_modes(scene, b, summary)) return;
   for (const HighestMode& h : b.highest) {
     if (h.modes > 1)
       all.push_back({"energy of the highest " + before_mode(h.family) + "mode of '" + b.name + "'", h.share,
@@ -34,20 +38,33 @@ void add_body(std::vector<Indicator>& all, const Scene& scene, const BodyValidit
   }
 }
 
+/// Steps that nobody controls are to follow the lowest vibration of each body: six of them a period and more.
+void add_step(std::vector<Indicator>& all, const Scene& scene, const RunSummary& summary) {
+  constexpr double radians_a_step = 1;
+  if (scene.source.at("integrator").find("rtol") != nullptr || summary.steps.accepted == 0) return;
+  const double step = (summary.reached - scene.initial.time) / static_cast<double>(summary.steps.accepted);
+  for (const BodyValidity& b : summary.validity.bodies)
+    if (b.fundamental > 0)
+      all.push_back({"step times the lowest frequency of '" + b.name + "'", step * b.fundamental, radians_a_step,
+                     "its vibrations are not followed"});
+}
+
 }  // namespace
 
 std::string deflection_name(const BodyValidity& body) {
-  return body.station == "tip" ? "tip deflection" : "deflection of station '" + body.station + "'";
+  if (body.station == "tip") return "tip deflection";
+  return "deflection of " + MeasuredPlace{body.station, {}}.in_words();
 }
 
 std::string before_mode(const std::string& family) { return family == "mode" ? "" : family + ' '; }
 
-bool bends_within_tolerance(const Scene& scene, const BodyValidity& body, const RunSummary& summary) {
+bool needs_no_modes(const Scene& scene, const BodyValidity& body, const RunSummary& summary) {
   constexpr double of_tolerance = 1e3;
+  const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(body.name))];
+  if (node.segment) return true;
   const Value* atol = scene.source.at("integrator").find("atol");
   const auto ratio = summary.peak_deflection_ratio.find(body.name);
   if (atol == nullptr || ratio == summary.peak_deflection_ratio.end()) return false;
-  const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(body.name))];
   return ratio->second * node.body->shape().length <= of_tolerance * atol->number();
 }
 
@@ -58,6 +75,7 @@ std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary,
     const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
     add_body(all, scene, b, node.terms.value_or(terms), summary);
   }
+  add_step(all, scene, summary);
   std::stable_sort(all.begin(), all.end(), [](const Indicator& a, const Indicator& b) { return a.use() > b.use(); });
   return all;
 }

@@ -28,9 +28,10 @@ std::string deflection_name(const BodyValidity& body);
 /// whose name is "mode" itself.
 std::string before_mode(const std::string& family);
 
-/// Whether a body bends no more than a thousand times the absolute tolerance of the scene's integrator, which leaves as
-/// much in any of its modes: their shares of the energy tell nothing.
-bool bends_within_tolerance(const Scene& scene, const BodyValidity& body, const RunSummary& summary);
+/// Whether the shares that a body's highest modes have of its energy tell nothing: it bends no more than a thousand
+/// times the absolute tolerance of the scene's integrator, which leaves as much in any mode; or it is one of several
+/// segments, which are to a beam what modes are.
+bool needs_no_modes(const Scene& scene, const BodyValidity& body, const RunSummary& summary);
 
 /// Those that matter to the scene's formulation, the one nearest to its limit (or furthest past it) first.
 /// \param used what the run kept in the end, where that is not what the scene's formulation says

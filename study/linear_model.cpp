@@ -12,6 +12,7 @@
 #include "withy/study/linear_inputs.hpp"
 #include "withy/study/linear_outputs.hpp"
 #include "withy/study/linear_parts.hpp"
+#include "withy/study/sampled_steady.hpp"
 
 namespace withy::study {
 namespace {
@@ -98,8 +99,7 @@ LinearModel about(const Configuration& c, const SmallMotions& motions, const Sam
   for (const Eigen::Index s : motions.free())
     linear.accelerations.emplace_back(c.layout().speed_names[static_cast<std::size_t>(s)], motions.accelerations()[s]);
   linear.changing = changing_loads(c);
-  linear.equilibrium = at_rest(c) && sampled.steady() && is_steady_state(c.dynamics(), c.state(), c.held()) &&
-                       uneven_motions(c.dynamics(), c.state(), c.held()).empty();
+  linear.equilibrium = at_rest(c) && is_steady(c) && uneven_motions(c.dynamics(), c.state(), c.held()).empty();
   return linear;
 }
 

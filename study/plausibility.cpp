@@ -11,6 +11,7 @@
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/plugin/measured_place.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/fast_course.hpp"
@@ -255,21 +256,20 @@ void look_at_angles(const Prepared& prepared, std::vector<Remark>& all) {
 /// Bodies that begin bent beyond what a run goes on with.
 void look_at_start(const Prepared& prepared, std::vector<Remark>& all) {
   const Scene& scene = prepared.scene;
-  for (const Tip& tip : tips(prepared.model())) {
+  for (const Tip& tip : measured_ends(prepared.model())) {
     if (!tip.flexible || !(tip.length > 0)) continue;
     const auto d = deflection(*prepared.equations, scene.initial.y, tip);
     const double share = std::hypot(d[0], d[1], d[2]) / tip.length;
     if (!(share > scene.deflection_limit)) continue;
     all.push_back(
         {place_of(scene, "bodies", tip.body),
-         fmt::format(
-             "the scene begins with the tip of '{}' deflected by {} times its length, beyond what a run goes on "
-             "with (limits.deflection, {}){}",
-             tip.body, brief(share), brief(scene.deflection_limit),
-             loops_of(prepared.model()).empty()
-                 ? ""
-                 : "; loops that hinges cannot close are closed by bending: are the frames and offsets of "
-                   "constraints meant so?")});
+         fmt::format("the scene begins with {} of '{}' deflected by {} times its length, beyond what a run goes on "
+                     "with (limits.deflection, {}){}",
+                     MeasuredPlace{tip.station, {}}.in_words(), tip.body, brief(share), brief(scene.deflection_limit),
+                     loops_of(prepared.model()).empty()
+                         ? ""
+                         : "; loops that hinges cannot close are closed by bending: are the frames and offsets of "
+                           "constraints meant so?")});
   }
 }
 

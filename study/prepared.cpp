@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "withy/core/model/compiled_model.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/floating_point.hpp"
@@ -89,7 +90,7 @@ void make_rungs(Prepared& prepared, Registry& registry) {
     if (!rung.standing.studied || truncation == Truncation::strict) continue;
     if (truncation == Truncation::symmetric && !worth_symmetric(prepared.model())) continue;
     try {
-      prepared.rung_equations.push_back(rung.formulation->compile(prepared.scene.model));
+      prepared.rung_equations.push_back(compile_model(*rung.formulation, prepared.scene.model));
     } catch (const std::invalid_argument&) {
       continue;  // a body without exact kinematics: the ladder ends before it
     }
@@ -103,7 +104,7 @@ void make_rungs(Prepared& prepared, Registry& registry) {
 Prepared compiled(SceneValues values, Scene scene, Registry& registry) {
   Prepared prepared{std::move(values), std::move(scene), nullptr, {}, {}};
   try {
-    prepared.equations = prepared.scene.formulation->compile(prepared.scene.model);
+    prepared.equations = compile_model(*prepared.scene.formulation, prepared.scene.model);
   } catch (const std::invalid_argument& e) {
     throw InputError(prepared.scene.file + ": formulation " + prepared.scene.formulation_name + ": " + e.what());
   }
@@ -129,6 +130,12 @@ Prepared prepare(SceneValues values, Registry& registry) {
 Prepared prepare(SceneValues values, Registry& registry, SceneParts& parts) {
   Scene scene = make_scene(values, registry, parts);
   return compiled(std::move(values), std::move(scene), registry);
+}
+
+void check_one_formulation(const Prepared& prepared, const std::string& who) {
+  if (!prepared.escalates()) return;
+  throw InputError(prepared.scene.file + ": /formulation: got 'auto', which changes the equations along a run; " + who +
+                   " needs one formulation by name");
 }
 
 std::string use_threads(Prepared& prepared, std::size_t threads) {
@@ -171,14 +178,14 @@ Beyond compile_throughout(const Prepared& prepared, Registry& registry, const st
   const Scene& scene = prepared.scene;
   const auto& bodies = scene.model->bodies();
   if (std::none_of(bodies.begin(), bodies.end(), [](const BodyNode& b) { return b.terms.has_value(); }))
-    return {formulation, scene.model, make_formulation(registry, formulation)->compile(scene.model), false};
+    return {formulation, scene.model, compile_model(*make_formulation(registry, formulation), scene.model), false};
   SceneValues values = prepared.values;
   for (const BodyNode& body : bodies) {
     const std::string& name = body.segment ? body.segment->whole : body.name;
     if (body.terms) values.body_formulation(name, formulation, "every body in one formulation");
   }
   const Scene all = make_scene(values.choose_formulation(formulation, "every body in one formulation"), registry);
-  return {formulation, all.model, all.formulation->compile(all.model), false};
+  return {formulation, all.model, compile_model(*all.formulation, all.model), false};
 }
 
 std::optional<Beyond> next_model_up(const Prepared& prepared, Registry& registry) {

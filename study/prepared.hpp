@@ -43,6 +43,9 @@ Prepared prepare(SceneValues values, Registry& registry);
 /// The same with what `parts` remembers of scenes before.
 Prepared prepare(SceneValues values, Registry& registry, SceneParts& parts);
 
+/// \param who "an FMU". \throws InputError where the formulation is `auto`, which changes along a run: they need one
+void check_one_formulation(const Prepared& prepared, const std::string& who);
+
 /// From now on evaluates the branches of the tree on that many threads (on_threads): the same bits, in less time where
 /// they are large. \returns why it does not, and nothing has changed; empty where it does. \param threads at least 2
 std::string use_threads(Prepared& prepared, std::size_t threads);

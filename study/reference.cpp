@@ -83,6 +83,7 @@ class ReferenceSearch {
   /// Whether a level is known well enough, which is the end of the search; what comes near it is kept.
   bool known_by(const Reference& level, const ModeSeries& series) {
     Reference reached = lead(level, series);
+    add_third_order(reached, level);
     if (!settled(reached)) {
       keep_nearest(reached, series.limit_before());
       return false;
@@ -209,7 +210,15 @@ class ReferenceSearch {
     reached.added_by = level.point;
     reached.readings = corrected(outputs_, series.limit(), level.readings, base.readings);
     for (std::size_t k = 0; k < level.own.size(); ++k) reached.own[k] += level.own[k];
+    add_third_order(reached, level);
     return reached;
+  }
+
+  /// What the kinematics of the highest rung that has a part in a reference lacks.
+  static void add_third_order(Reference& reached, const Reference& highest) {
+    reached.deflection = highest.deflection;
+    reached.third_order = highest.third_order;
+    for (std::size_t k = 0; k < reached.own.size(); ++k) reached.own[k] += highest.third_order * reached.scales[k];
   }
 
   /// The run that a series has come to, with the readings that it leads to.

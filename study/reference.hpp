@@ -27,7 +27,9 @@ struct Reference {
   Distances ranges;           ///< greatest distances of outputs from their start
   double energy = 0;          ///< greatest kinetic energy at an output [J]
   Distances scales;           ///< what relative errors are shares of
-  Distances own;              ///< what the readings may be off by (ModeSeries); empty: not known
+  Distances own;              ///< what the readings may be off by (ModeSeries, ThirdOrder); empty: not known
+  double deflection = 0;      ///< over length, of the bodies whose kinematics is not exact (ThirdOrder)
+  double third_order = 0;     ///< share of the scales in `own` that is of it
   Walk walk;
   Readings coarser = {};  ///< of the level before, of the nearest alone
   /// "exact, 5 modes, dop853 at 1e-07", "exact, 5 modes, dop853 at 1e-07, extrapolated".

@@ -7,6 +7,7 @@
 
 #include "withy/study/accuracy.hpp"
 #include "withy/study/output_reader.hpp"
+#include "withy/study/third_order.hpp"
 
 namespace withy::study {
 
@@ -58,7 +59,9 @@ std::optional<Reference> ReferenceRuns::run(const Point& point) {
   }
   Reference r{.point = point, .readings = {}, .ranges = outputs_.none(), .scales = {}, .own = {}, .walk = {}};
   OutputReader reader(outputs_, model.prepared->model(), *model.prepared->equations, model.prepared->scene.outputs);
+  ThirdOrder third_order(*model.prepared);
   const auto keep = [&](const State& s) {
+    third_order.look(s);
     r.readings.times.push_back(s.time);
     r.readings.values.push_back(reader.read(s));
     r.energy = std::max(r.energy, reader.kinetic_energy());
@@ -72,6 +75,8 @@ std::optional<Reference> ReferenceRuns::run(const Point& point) {
   r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
                 {keep, afford, control_.interrupted});
   r.scales = scales(outputs_, r.ranges, r.energy);
+  r.deflection = third_order.deflection();
+  r.third_order = third_order.share();
   return ended(point, std::move(r));
 }
 

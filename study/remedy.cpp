@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "withy/core/model/closing.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/stop.hpp"
 #include "withy/study/fast_course.hpp"
 #include "withy/study/step_limit.hpp"
@@ -32,7 +33,7 @@ std::string placed_name(const Prepared& prepared, const char* key, const std::st
   return fmt::format("'{}'{}", name, line > 0 ? fmt::format(" (line {} of the scene)", line) : "");
 }
 
-/// Where a load gives no finite efforts at the last state or a step later.
+/// Where a load gives no finite efforts, or its states no finite rates, at the last state or a step later.
 std::string load_remedy(const Prepared& prepared, const RunSummary& summary) {
   const Model& model = prepared.model();
   Work work = prepared.equations->make_work();
@@ -49,6 +50,16 @@ std::string load_remedy(const Prepared& prepared, const RunSummary& summary) {
             placed_name(prepared, "loads", model.loads()[load].name));
       if (!(ahead > 0)) break;
     }
+  }
+  const NonfiniteRates rates = nonfinite_rates(model, summary.final, summary.steps.largest_step);
+  for (const LoadSlot& slot : model.layout().continuous_slots) {
+    const std::size_t first = slot.first - model.layout().positions - model.layout().speeds;
+    if (!rates.states.empty() && rates.states.front() >= first && rates.states.front() < first + slot.count)
+      return fmt::format(
+          " What to do: change load {}, or what it measures, so that the rate of '{}' is finite up to the end of the "
+          "run.",
+          placed_name(prepared, "loads", model.loads()[slot.load].name),
+          model.layout().continuous_names[rates.states.front()]);
   }
   return {};
 }
@@ -159,7 +170,7 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
            "'rtol' below what the numbers hold.";
   return std::string(
              " What to do: run it with a tenth of 'rtol' or of the step. If it ends at the same time the motion "
-             "itself grows: look at the loads, gains and stiffness named above (withy check") +
+             "itself grows: look at the scene's loads, gains and stiffness (withy check") +
          (bends && terms.strain != StrainOrder::exact ? "; --formulation exact for large deflections)." : ").");
 }
 

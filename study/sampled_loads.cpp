@@ -149,7 +149,6 @@ void SampledLoads::differentiate() {
   for (const Part& part : loads_) {
     const auto count = static_cast<Eigen::Index>(part.slot.count);
     const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
-    if (change_.segment(part.first, count).cwiseAbs().maxCoeff() > 1e-9 * size_of_held) steady_ = false;
     for (Eigen::Index i = part.first; i < part.first + count; ++i) {
       const auto slope = [&](auto&& of) {
         return adaptive_difference([&](double h) { return of(displaced(h * Eigen::VectorXd::Unit(size(), i))); },

@@ -41,8 +41,6 @@ class SampledLoads {
   [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> held_by(std::size_t load) const;
   /// Whether other sampled loads are renewed with what a load holds, directly and not by what it makes others do.
   [[nodiscard]] bool measured_by_others(std::size_t load);
-  /// Whether renewing changes what is held where the motion stays at the state.
-  [[nodiscard]] bool steady() const { return steady_; }
   /// By how much it does.
   [[nodiscard]] const Eigen::VectorXd& change() const { return change_; }
   /// What is held at the state.
@@ -98,7 +96,6 @@ class SampledLoads {
   std::vector<std::vector<bool>> due_;     ///< one a kind: the loads that are renewed; all of them first
   std::vector<Eigen::MatrixXd> renewals_;  ///< one a kind: R
   double period_ = 0;
-  bool steady_ = true;
   Eigen::VectorXd change_;
   Eigen::MatrixXd efforts_, own_efforts_;
   Eigen::MatrixXd rates_;  ///< Z: zero but for the rows of continuous states

@@ -182,20 +182,35 @@ std::unique_ptr<Balance> advanced(const Balance& here, const Eigen::VectorXd& ch
   return nullptr;
 }
 
-/// What is drawn anew leaves nothing as it is.
-void refuse_draws(const Prepared& prepared) {
-  for (const LoadSlot& slot : sampled_slots(prepared.model())) {
-    const LoadNode& load = prepared.model().loads()[slot.load];
+/// The load that draws a number at each sample, which leaves nothing as it is; null: none does.
+const LoadNode* drawing(const Model& model) {
+  for (const LoadSlot& slot : sampled_slots(model)) {
+    const LoadNode& load = model.loads()[slot.load];
     const auto* digital = dynamic_cast<const DigitalPart*>(load.load->discrete());
-    if (digital != nullptr && digital->draws())
-      throw InputError(
-          fmt::format("{}: load '{}' draws a number at each sample, and nothing stays as it is: take its "
-                      "deviation away (--set loads.{}.deviation=0)",
-                      prepared.scene.file, load.name, load.name));
+    if (digital != nullptr && digital->draws()) return &load;
   }
+  return nullptr;
+}
+
+void refuse_draws(const Prepared& prepared) {
+  if (const LoadNode* load = drawing(prepared.model()))
+    throw InputError(
+        fmt::format("{}: load '{}' draws a number at each sample, and nothing stays as it is: take its "
+                    "deviation away (--set loads.{}.deviation=0)",
+                    prepared.scene.file, load->name, load->name));
 }
 
 }  // namespace
+
+bool is_steady(const Configuration& c) {
+  if (!c.sampled()) return is_steady_state(c.dynamics(), c.state(), c.held());
+  constexpr double kept_change = 1e-9;
+  if (drawing(c.prepared().model()) != nullptr) return false;
+  const Balance balance(c);
+  if (!balance.finite()) return false;
+  const Eigen::VectorXd step = balance.columns().cwiseProduct(balance.change(balance));
+  return step.allFinite() && (step.array().abs() <= kept_change * balance.sizes().array()).all() && balance.balanced();
+}
 
 SteadyState steady_state_of(const Configuration& c) {
   if (!c.sampled()) return find_steady_state(c.dynamics(), c.state(), c.held());

@@ -10,5 +10,8 @@ namespace withy::study {
 /// as it is, every later one does. Newton's method for displacements, continuous states and what is held together.
 /// \throws std::domain_error, InputError where small motions cannot be found
 SteadyState steady_state_of(const Configuration& configuration);
+/// Whether its state is one: is_steady_state; where loads are sampled, by what the method above would still change.
+/// \throws std::domain_error where small motions cannot be found
+bool is_steady(const Configuration& configuration);
 
 }  // namespace withy::study

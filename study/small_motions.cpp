@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "withy/core/analysis/modes.hpp"
+#include "withy/core/model/compiled_model.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/input_error.hpp"
@@ -59,7 +60,7 @@ SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> senso
   hold(c, *model, !sensors.empty());
   model->add_load("effort", Push());
   model_ = model;
-  equations_ = c.prepared().scene.formulation->compile(model_);
+  equations_ = compile_model(*c.prepared().scene.formulation, model_);
   reader_ = std::make_unique<SensorReader>(std::move(sensors), *equations_);
   work_ = equations_->make_work();
   // The discrete states that push are the last, before the work.

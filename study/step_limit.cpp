@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "withy/core/analysis/fastest_pole.hpp"
@@ -65,6 +66,16 @@ std::optional<TooStiff> too_stiff_at(const Prepared& prepared, const State& stat
 
 bool controlled(const Scene& scene) { return scene.source.at("integrator").find("rtol") != nullptr; }
 
+/// The longest step that the scene allows [s]: its max_step, or from one sample of a load to the next.
+double longest_step(const Scene& scene) {
+  const Value* given = scene.source.at("integrator").find("max_step");
+  double longest = given != nullptr ? given->number() : std::numeric_limits<double>::infinity();
+  for (const LoadNode& node : scene.model->loads())
+    if (const DiscretePart* part = node.load->discrete(); part != nullptr && part->period() > 0)
+      longest = std::min(longest, part->period());
+  return longest;
+}
+
 /// Where no pole is known the fastest mode stays.
 void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit& s) {
   if (s.mean == 0) return;
@@ -81,9 +92,11 @@ void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit
 std::string StepLimit::cause() const {
   // Of the greatest stable step: the mean of steps that go to and fro about it lies above this share.
   constexpr double near_limit = 0.6;
+  // Steps land on what they may not pass, and are shorter here and there.
+  constexpr double all_of_it = 0.9;
   if (!limit || product == 0) return "unknown";
-  if (fastest_rests()) return "accuracy";
-  return product > near_limit * *limit ? "stability" : "accuracy";
+  if (!fastest_rests() && product > near_limit * *limit) return "stability";
+  return !controlled || mean >= all_of_it * longest ? "given" : "accuracy";
 }
 
 bool StepLimit::fastest_rests() const {
@@ -106,6 +119,7 @@ StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Regist
   const Scene& scene = prepared.scene;
   StepLimit s = step_limit(*scene.integrator, scene.initial.time, summary);
   s.controlled = controlled(scene);
+  s.longest = longest_step(scene);
   find_fastest(prepared, summary, s);
   if (s.cause() != "stability") return s;
   const EquationsOfMotion& equations = *prepared.equations;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,8 +25,10 @@ struct StepLimit {
   std::optional<Slowing> fewer;
   std::vector<std::string> unlimited;
   bool controlled = true;  ///< the integrator chooses its steps
-  /// "stability", "accuracy" or "unknown". Error control that meets the limit goes to and fro about it, so the mean
-  /// stays a little below.
+  double longest =
+      std::numeric_limits<double>::infinity();  ///< step that it may choose: max_step, or between samples [s]
+  /// "stability", "accuracy", "given" (by the scene, as fixed steps are and those that it allows no longer) or
+  /// "unknown". Error control that meets the limit goes to and fro about it, so the mean stays a little below.
   [[nodiscard]] std::string cause() const;
   /// Steps that are chosen go far beyond the limit: what is so fast rests, or began at the end.
   [[nodiscard]] bool fastest_rests() const;

@@ -25,14 +25,6 @@ bool same(const Terms& a, const Terms& b) {
   return a.strain == b.strain && a.truncation == b.truncation && a.products_of_speeds == b.products_of_speeds;
 }
 
-/// M u̇ − f of the equations.
-std::vector<double> balance(const EquationsOfMotion& equations, const State& state, std::span<const double> u_dot) {
-  std::vector<double> force(u_dot.size());
-  Work work = equations.make_work();
-  equations.inverse_dynamics(state.y, u_dot, force, work);
-  return force;
-}
-
 }  // namespace
 
 double LeftOutBy::rms(std::size_t group) const { return rms_of(sizes[group]); }
@@ -93,9 +85,9 @@ void TermStudy::compile_all(Registry& registry) {
 }
 
 void TermStudy::enter_left_out(const State& state, std::span<const double> accelerations) {
-  const std::vector<double> whole = balance(*others_.back().equations, state, accelerations);
+  const std::vector<double> whole = force_balance(*others_.back().equations, state, accelerations);
   for (std::size_t i = 0; i < sizes_.left_out.size(); ++i) {
-    std::vector<double> missing = balance(*others_[i].equations, state, accelerations);
+    std::vector<double> missing = force_balance(*others_[i].equations, state, accelerations);
     for (std::size_t k = 0; k < missing.size(); ++k) missing[k] -= whole[k];
     for (std::size_t g = 0; g < sizes_.groups.size(); ++g)
       sizes_.left_out[i].sizes[g].push_back(size_of(missing, sizes_.groups[g], inertias_));

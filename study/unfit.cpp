@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "withy/core/model/compiled_model.hpp"
+
 namespace withy::study {
 
 std::vector<Unfit> take_out_unfit(const std::shared_ptr<const Model>& model, Registry& registry,
@@ -10,7 +12,7 @@ std::vector<Unfit> take_out_unfit(const std::shared_ptr<const Model>& model, Reg
   std::vector<Unfit> unfit;
   for (const std::string& formulation : formulations) {
     try {
-      static_cast<void>(make_formulation(registry, formulation)->compile(model));
+      static_cast<void>(compile_model(*make_formulation(registry, formulation), model));
       fit.push_back(formulation);
     } catch (const std::invalid_argument& e) {
       unfit.push_back({formulation, e.what()});

@@ -20,11 +20,12 @@ Forces plus(const Forces& a, const Forces& b) {
   return f;
 }
 
-/// What one formulation makes of a state: M u̇, its velocity terms with damping, and the rest with weight and −K q.
+/// What one formulation makes of a state: M u̇, its velocity terms with damping, the rest with weight and −K q, and
+/// loads.
 struct Parts {
-  Forces inertia, velocity, rest;
+  Forces inertia, velocity, rest, loads;
   Parts(const EquationsOfMotion& equations, const State& state, const State& at_rest, std::span<const double> u_dot)
-      : inertia(u_dot.size()), rest(u_dot.size()) {
+      : inertia(u_dot.size()), rest(u_dot.size()), loads(u_dot.size()) {
     Work work = equations.make_work();
     equations.mass_times(state.y, u_dot, inertia, work);
     const Forces none(u_dot.size());
@@ -33,6 +34,7 @@ struct Parts {
     equations.inverse_dynamics(at_rest.y, none, rest, work);
     velocity = minus(rest, moving);
     for (double& f : rest) f = -f;
+    equations.load_efforts(state.time, state.y, EquationsOfMotion::all_loads, loads, work);
   }
 };
 
@@ -40,7 +42,8 @@ struct Parts {
 
 std::string_view name(Term term) {
   static constexpr std::array<std::string_view, terms_of_motion> names = {
-      "M0 a", "M*1 a", "M*2 a", "M*3 a", "f1", "f2-1", "f2-2", "f3", "weight", "K q", "D q'", "loads"};
+      "M0 a",     "M*1 a",    "M*2 a",    "M*3 a", "f1",   "f2-1",  "f2-2",    "f3",      "weight",
+      "weight*1", "weight*2", "weight*3", "K q",   "D q'", "loads", "loads*1", "loads*2", "loads*3"};
   return names.at(static_cast<std::size_t>(term));
 }
 
@@ -62,32 +65,36 @@ TermForces TermLedger::evaluate(const State& state, std::span<const double> u_do
     Eigen::Map<Eigen::VectorXd>(stiffness.data() + slot.speed, shape.modes()) = shape.stiffness * q;
     Eigen::Map<Eigen::VectorXd>(damping.data() + slot.speed, shape.modes()) = shape.damping * rate;
   }
-  set(Term::inertia, ruthless.inertia);
-  set(Term::inertia_linear, minus(inconsistent.inertia, ruthless.inertia));
-  set(Term::inertia_quadratic, minus(consistent.inertia, inconsistent.inertia));
-  set(Term::inertia_higher, minus(quadratic.inertia, consistent.inertia));
-  // Every formulation has the same damping, −D q̇.
-  Forces rigid = ruthless.velocity, weight = quadratic.rest;
-  for (std::size_t i = 0; i < layout.speeds; ++i) {
-    rigid[i] += damping[i];
-    weight[i] += stiffness[i];
+  // Every formulation has the same stiffness, −K q, and the same damping, −D q̇.
+  const auto set_orders = [&](Term zero, Forces Parts::*part, const Forces& beside) {
+    const auto first = static_cast<std::size_t>(zero);
+    forces[first] = plus(ruthless.*part, beside);
+    forces[first + 1] = minus(inconsistent.*part, ruthless.*part);
+    forces[first + 2] = minus(consistent.*part, inconsistent.*part);
+    forces[first + 3] = minus(quadratic.*part, consistent.*part);
+  };
+  const Forces none(layout.speeds);
+  set_orders(Term::inertia, &Parts::inertia, none);
+  set_orders(Term::velocity_rigid, &Parts::velocity, damping);
+  set_orders(Term::weight, &Parts::rest, stiffness);
+  Forces motions(layout.speeds);
+  if (!model_.motions().empty()) {
+    Work work = of_.quadratic->make_work();
+    if (!of_.quadratic->motion_efforts(state.time, state.y, motions, work).ok()) motions = none;
   }
-  set(Term::velocity_rigid, std::move(rigid));
-  set(Term::velocity_linear, minus(inconsistent.velocity, ruthless.velocity));
-  set(Term::velocity_quadratic, minus(consistent.velocity, inconsistent.velocity));
-  set(Term::velocity_higher, minus(quadratic.velocity, consistent.velocity));
-  set(Term::weight, std::move(weight));
+  set_orders(Term::loads, &Parts::loads, motions);
   set(Term::stiffness, std::move(stiffness));
   set(Term::damping, std::move(damping));
-  Forces loads(layout.speeds);
-  Work work = of_.quadratic->make_work();
-  of_.quadratic->load_efforts(state.time, state.y, EquationsOfMotion::all_loads, loads, work);
-  if (!model_.motions().empty()) {
-    Forces motions(layout.speeds);
-    if (of_.quadratic->motion_efforts(state.time, state.y, motions, work).ok()) loads = plus(loads, motions);
-  }
-  set(Term::loads, std::move(loads));
   return forces;
+}
+
+std::vector<double> force_balance(const EquationsOfMotion& equations, const State& state,
+                                  std::span<const double> u_dot) {
+  Work work = equations.make_work();
+  Forces force(u_dot.size()), loads(u_dot.size());
+  equations.inverse_dynamics(state.y, u_dot, force, work);
+  equations.load_efforts(state.time, state.y, EquationsOfMotion::all_loads, loads, work);
+  return minus(force, loads);
 }
 
 std::vector<CoordinateGroup> coordinate_groups(const Layout& layout) {

@@ -14,9 +14,10 @@
 namespace withy {
 
 /// Groups of terms, in the order of the ledger. With M = M⁰ + M*¹ + M*² + M*³,
-///   M u̇ + K q + D q̇ = f₁ + f₂¹ + f₂² + f₃ + weight + loads.
-/// Index 1: of order zero in the elastic coordinates; 2: of order one, from linear (¹) and from nonlinear (²) relations
-/// of strain and displacement; 3: all that is of higher order.
+///   M u̇ + K q + D q̇ = f₁ + f₂¹ + f₂² + f₃ + weight + weight*¹ + weight*² + weight*³ + loads + loads*¹ + loads*² +
+///   loads*³.
+/// Index 1 of f: of order zero in the elastic coordinates; 2: of order one, from linear (¹) and from nonlinear (²)
+/// relations of strain and displacement; 3: all that is of higher order. Stars count as those of M.
 enum class Term {
   inertia,             ///< M⁰ u̇
   inertia_linear,      ///< M*¹ u̇
@@ -26,13 +27,19 @@ enum class Term {
   velocity_linear,     ///< f₂¹
   velocity_quadratic,  ///< f₂²
   velocity_higher,     ///< f₃
-  weight,              ///< of all orders
+  weight,              ///< of order zero
+  weight_linear,       ///< where linear relations move what is heavy
+  weight_quadratic,    ///< where foreshortening does: what buckles a column
+  weight_higher,       ///< of higher order
   stiffness,           ///< K q
   damping,             ///< D q̇
-  loads                ///< and the efforts of prescribed motions
+  loads,               ///< of order zero, and the efforts of prescribed motions
+  loads_linear,        ///< where linear relations move the frames that loads act at, and turn what follows them
+  loads_quadratic,     ///< where foreshortening moves them: what buckles a column under a force at its tip
+  loads_higher         ///< of higher order
 };
-inline constexpr std::size_t terms_of_motion = 12;
-/// "M0 a", "M*1 a", …, "f1", "f2-1", "f2-2", "f3", "weight", "K q", "D q'", "loads".
+inline constexpr std::size_t terms_of_motion = 18;
+/// "M0 a", "M*1 a", …, "f1", "f2-1", "f2-2", "f3", "weight", "weight*1", …, "K q", "D q'", "loads", "loads*1", ….
 std::string_view name(Term term);
 
 /// The terms at one state: for each a force on every generalized speed [N m, N].
@@ -56,6 +63,10 @@ class TermLedger {
   const Model& model_;
   Formulations of_;
 };
+
+/// M u̇ − f [N m, N] of the equations at a state, loads included: what motions, and errors, are left to account for.
+std::vector<double> force_balance(const EquationsOfMotion& equations, const State& state,
+                                  std::span<const double> u_dot);
 
 /// Coordinates that are looked at together: "hinges", "bending", "torsion", and "elastic" for other modes.
 struct CoordinateGroup {

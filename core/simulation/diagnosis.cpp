@@ -58,16 +58,13 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 /// Loads with states of their own whose rates are not finite: what they measure is not, or is out of all range.
-std::string nonfinite_rates(const Model& model, const State& state) {
-  const Layout& layout = model.layout();
-  const std::size_t first = layout.positions + layout.speeds;
-  std::vector<double> rates(layout.size()), scratch(model.load_scratch());
-  static_cast<void>(model.continuous_rates(state.time, state.y, rates, scratch));
+std::string describe_rates(const Model& model, const State& state, double ahead) {
+  const NonfiniteRates bad = nonfinite_rates(model, state, ahead);
   std::string text;
-  for (std::size_t i = 0; i < layout.continuous; ++i)
-    if (!std::isfinite(rates[first + i]))
-      text += (text.empty() ? "" : "; ") +
-              ("the rate of '" + layout.continuous_names[i] + "' is not finite: look at what that load measures");
+  for (const std::size_t i : bad.states)
+    text += (text.empty() ? "" : "; ") +
+            ("the rate of '" + model.layout().continuous_names[i] + "' is not finite at t = " + brief(bad.time) +
+             " s: look at what that load measures");
   return text;
 }
 
@@ -95,7 +92,7 @@ std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equatio
       if (!(ahead > 0)) break;
     }
   }
-  if (const std::string rates = nonfinite_rates(model, state); !rates.empty())
+  if (const std::string rates = describe_rates(model, state, ahead); !rates.empty())
     text += (text.empty() ? "" : "; ") + rates;
   return text;
 }
@@ -233,6 +230,22 @@ double fastest_mode(const Model& model, const DenseSystem& system) {
   const Eigen::MatrixXd square = factor.matrixL().solve(half.transpose());
   return std::sqrt(std::max(
       0.0, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(square, Eigen::EigenvaluesOnly).eigenvalues().tail<1>()[0]));
+}
+
+NonfiniteRates nonfinite_rates(const Model& model, const State& state, double ahead) {
+  const Layout& layout = model.layout();
+  const std::size_t first = layout.positions + layout.speeds;
+  std::vector<double> rates(layout.size()), scratch(model.load_scratch());
+  NonfiniteRates found;
+  if (layout.continuous == 0) return found;
+  for (double after = 0; after <= ahead; after = after > 0 ? 2 * after : ahead * 0x1p-30) {
+    found.time = state.time + after;
+    if (!model.continuous_rates(found.time, state.y, rates, scratch))
+      for (std::size_t i = 0; i < layout.continuous; ++i)
+        if (!std::isfinite(rates[first + i])) found.states.push_back(i);
+    if (!found.states.empty() || !(ahead > 0)) break;
+  }
+  return found;
 }
 
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
@@ -61,6 +62,15 @@ std::string describe_sound(const MassMatrixHistory& history);
 /// Greatest √ of the eigenvalues of M⁻¹K [rad/s], K the stiffness of all bodies: how fast the modes retained can
 /// vibrate in the tree. 0 where the symmetric part of M is not positive definite.
 double fastest_mode(const Model& model, const DenseSystem& system);
+
+/// Continuous states of loads whose rates are not finite from a state on, at the first such time found.
+struct NonfiniteRates {
+  std::vector<std::size_t> states;  ///< among those of all loads; empty where all rates are finite
+  double time = 0;                  ///< [s]
+};
+
+/// Looks at the state and at times up to `ahead` seconds later.
+NonfiniteRates nonfinite_rates(const Model& model, const State& state, double ahead);
 
 /// Names what is not finite at the state or, for loads, up to `ahead` seconds later: loads, speeds, accelerations.
 /// Empty where all of it is finite.

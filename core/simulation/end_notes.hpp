@@ -10,7 +10,7 @@
 namespace withy {
 
 /// Times [s] at which steps were rejected again and again, in sentences.
-std::string note_on_jumps(const std::vector<double>& times);
+std::string note_on_jumps(const Model& model, const std::vector<double>& times);
 /// The events that were to do something and have not, in a sentence; empty where there are none.
 std::string note_on_missed_events(const Model& model, const State& end);
 /// The event whose impulses have taken most energy, in a sentence: of a latch at high speed. Empty where none has.

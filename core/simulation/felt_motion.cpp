@@ -1,5 +1,6 @@
 #include "withy/core/simulation/felt_motion.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "withy/core/deformation/mass_points.hpp"
@@ -45,26 +46,66 @@ Vector3 force_on(const Model& model, const ActingFields& fields, std::size_t bod
   return force;
 }
 
+/// Whether a load acts there on a body; else on distributed mass, or on the world.
+bool is_frame(FrameIndex at) { return at.body >= 0 && at.frame >= 0; }
+
 }  // namespace
 
-std::vector<BodyMotion> felt_motions(const Model& model, const EquationsOfMotion& equations, const State& state,
-                                     const std::vector<BodyMotion>& motions) {
-  std::vector<BodyMotion> felt = motions;
-  if (field_of(model) == nullptr) return felt;
-  const ActingFields fields(model);
-  const auto seen = equations.make_observation();
-  seen->observe(state.y);
-  std::vector<Vector3> forces(felt.size(), Vector3::Zero());  // that fields exert on all that hangs on a hinge
-  for (std::size_t b = felt.size(); b-- > 0;) {
-    BodyMotion& B = felt[b];
-    const FrameMotion frame{B.R, B.p, B.rate, vector_of(seen->frame_velocity(static_cast<int>(b), 0).linear)};
+FeltMotion::FeltMotion(const Model& model, const EquationsOfMotion& equations)
+    : model_(model), bodies_(model.bodies().size()), scratch_(model.load_scratch()) {
+  for (const LoadNode& node : model.loads())
+    frames_.insert(frames_.end(), node.load->frames().begin(), node.load->frames().end());
+  motions_.resize(frames_.size());
+  wrenches_.resize(frames_.size());
+  at_frames_ = std::any_of(frames_.begin(), frames_.end(), is_frame);
+  if (at_frames_ || field_of(model) != nullptr) seen_ = equations.make_observation();
+}
+
+void FeltMotion::update(const State& state, const std::vector<BodyMotion>& motions) {
+  bodies_ = motions;
+  if (seen_ == nullptr) return;
+  seen_->observe(state.y);
+  if (field_of(model_) != nullptr) take_fields(state);
+  if (at_frames_) add_loads(state);
+}
+
+void FeltMotion::take_fields(const State& state) {
+  const ActingFields fields(model_);
+  std::vector<Vector3> forces(bodies_.size(), Vector3::Zero());  // that fields exert on all that hangs on a hinge
+  for (std::size_t b = bodies_.size(); b-- > 0;) {
+    BodyMotion& B = bodies_[b];
+    const FrameMotion frame{B.R, B.p, B.rate, vector_of(seen_->frame_velocity(static_cast<int>(b), 0).linear)};
     B.acceleration -= fields.acceleration(state.time, state.y, frame);
-    B.gradient = gradient_of(model, state, frame);
-    forces[b] += force_on(model, fields, b, state, frame);
+    B.gradient = gradient_of(model_, state, frame);
+    forces[b] += force_on(model_, fields, b, state, frame);
     B.force -= forces[b];
-    if (const int parent = model.hinges()[b].parent; parent >= 0) forces[static_cast<std::size_t>(parent)] += forces[b];
+    if (const int parent = model_.hinges()[b].parent; parent >= 0)
+      forces[static_cast<std::size_t>(parent)] += forces[b];
   }
-  return felt;
+}
+
+void FeltMotion::add_loads(const State& state) {
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    if (!is_frame(frames_[i])) continue;
+    const WorldPose pose = seen_->frame_pose(frames_[i].body, frames_[i].frame);
+    const WorldVelocity velocity = seen_->frame_velocity(frames_[i].body, frames_[i].frame);
+    motions_[i] = {Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation.data()),
+                   vector_of(pose.position), vector_of(velocity.angular), vector_of(velocity.linear)};
+  }
+  std::size_t first = 0;
+  for (const LoadNode& node : model_.loads()) {
+    const std::size_t count = node.load->frames().size();
+    if (count > 0 && frames_[first].frame >= 0)
+      node.wrenches(state.time, state.y, model_.layout(), std::span(motions_).subspan(first, count),
+                    std::span(wrenches_).subspan(first, count), scratch_);
+    first += count;
+  }
+  for (std::size_t i = 0; i < frames_.size(); ++i)
+    if (is_frame(frames_[i])) bodies_[static_cast<std::size_t>(frames_[i].body)].load += wrenches_[i].force;
+  for (std::size_t b = bodies_.size(); b-- > 0;) {
+    if (const int parent = model_.hinges()[b].parent; parent >= 0)
+      bodies_[static_cast<std::size_t>(parent)].load += bodies_[b].load;
+  }
 }
 
 }  // namespace withy

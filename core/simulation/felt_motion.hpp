@@ -1,7 +1,8 @@
 /// \file
-/// What bodies feel of the motion of a tree under loads on distributed mass.
+/// What bodies feel of the motion of a tree and of loads on it that do not act along its hinges.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,31 @@ namespace withy {
 /// The motions without what fields give: a satellite in free fall carries no load from its orbit. Forces are those on
 /// all mass points, where the bodies' first order has them; over a body a field counts as linear, by its value and its
 /// gradient at the body's frame, which is exact but for point-gravity: there the rest is of the order (l/d)² of the
-/// gradient's part, with l the length of the body and d the distance. Allocates.
-std::vector<BodyMotion> felt_motions(const Model& model, const EquationsOfMotion& equations, const State& state,
-                                     const std::vector<BodyMotion>& motions);
+/// gradient's part, with l the length of the body and d the distance. And with what loads at frames exert.
+class FeltMotion {
+ public:
+  /// The model must outlive the object.
+  FeltMotion(const Model& model, const EquationsOfMotion& equations);
+  /// At a state of the equations and the motions there. Allocates where the model has fields.
+  void update(const State& state, const std::vector<BodyMotion>& motions);
+  /// One a body of the model, as at the last update.
+  [[nodiscard]] const std::vector<BodyMotion>& bodies() const { return bodies_; }
+  /// What loads exert at their frames, world axes, in the order of the model's loads and of the frames of each, as at
+  /// the last update.
+  [[nodiscard]] std::span<const Wrench> at_frames() const { return wrenches_; }
+
+ private:
+  void take_fields(const State& state);
+  void add_loads(const State& state);
+
+  const Model& model_;
+  std::unique_ptr<Observation> seen_;  ///< null: there is nothing to be seen for
+  std::vector<BodyMotion> bodies_;
+  std::vector<FrameIndex> frames_;  ///< at which loads act, load after load
+  bool at_frames_ = false;          ///< some act at frames of bodies
+  std::vector<FrameMotion> motions_;
+  std::vector<Wrench> wrenches_;
+  std::vector<double> scratch_;
+};
 
 }  // namespace withy

@@ -6,6 +6,7 @@
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/plugin/measured_place.hpp"
 
 namespace withy {
 namespace {
@@ -59,17 +60,16 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     const BodyNode& node = model.bodies()[b];
     const double length = node.body->shape().length;
     if (node.body->shape().modes() == 0 || !(length > 0)) continue;
-    const std::string name = node.body->measured_station();
-    const auto section = node.body->station(name);
-    if (!section) continue;
-    const bool tip = name == "tip";
+    const std::optional<MeasuredPlace> place = measured_place(*node.body);
+    if (!place) continue;
+    const bool tip = place->name == "tip";
     ends_.push_back({model.layout().modes(b),
                      static_cast<int>(b),
-                     tip ? node.frame(name) : -1,
+                     node.frame(place->name),
                      seen_.expands(static_cast<int>(b)),
-                     SectionExpansion(*section),
+                     SectionExpansion(place->at),
                      length,
-                     tip ? "the tip" : "station '" + name + "'",
+                     place->in_words(),
                      tip && !node.segment ? &summary.peak_deflection[node.name] : nullptr,
                      &summary.peak_deflection_ratio[node.name],
                      {}});

@@ -18,8 +18,13 @@ MotionGap::MotionGap(const Model& model) : model_(model) {
 
 void MotionGap::look(const State& state) noexcept {
   for (Driven& d : driven_) {
+    if (std::isinf(d.gap)) continue;
     const double law = d.motion->motion->at(state.time).position;
-    if (!std::isfinite(law)) continue;  // whatever follows it ends the run
+    // Integrators ask for accelerations alone: as long as these are finite, the run goes on.
+    if (!std::isfinite(law)) {
+      d.gap = std::numeric_limits<double>::infinity(), d.time = state.time;
+      continue;
+    }
     d.least = std::min(d.least, law), d.most = std::max(d.most, law);
     if (const double gap = std::abs(state.y[d.position] - law); gap > d.gap) d.gap = gap, d.time = state.time;
   }
@@ -35,13 +40,16 @@ std::string MotionGap::text() const {
   const Driven* worst = nullptr;
   double greatest = kept;
   for (const Driven& d : driven_) {
+    if (std::isinf(d.gap))
+      return "Motion '" + d.motion->name + "' has no finite coordinate at t = " + brief(d.time) + " s: where hinge '" +
+             hinge_of(d).name + "' is from then on has no meaning.";
     const double range = d.most - d.least;
     // What stands still has no range, and rounding is no distance.
     const double share = d.gap > 1e-9 * (std::abs(d.least) + std::abs(d.most)) ? d.gap / range : 0;
     if (share > greatest) greatest = share, worst = &d;
   }
   if (worst == nullptr) return {};
-  const HingeNode& hinge = model_.hinges()[static_cast<std::size_t>(worst->motion->hinge)];
+  const HingeNode& hinge = hinge_of(*worst);
   const std::string unit = hinge_rates(*hinge.hinge).front().angular ? " rad" : " m";
   return "Hinge '" + hinge.name + "' is off its motion '" + worst->motion->name + "' by " + brief(worst->gap) + unit +
          " at t = " + brief(worst->time) + " s, of " + brief(worst->most - worst->least) + unit +

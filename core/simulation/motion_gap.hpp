@@ -18,8 +18,8 @@ class MotionGap {
   /// An accepted step or an output. Does not allocate.
   void look(const State& state) noexcept;
   void remember(Memory& memory);
-  /// A sentence on the hinge that is farthest from its law, against the range that the law has gone over where it was
-  /// looked at; empty where each has kept to it within a hundredth.
+  /// A sentence on a law that had no finite coordinate, or else on the hinge that is farthest from its law, against the
+  /// range that the law has gone over where it was looked at; empty where each has kept to it within a hundredth.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -27,8 +27,12 @@ class MotionGap {
     const MotionNode* motion;
     std::size_t position;  ///< index in State::y
     double least, most;    ///< of the law [rad, m]
-    double gap, time;      ///< the greatest, and when [s]
+    double gap, time;      ///< the greatest, and when [s]; infinite where the law was no number
   };
+  [[nodiscard]] const HingeNode& hinge_of(const Driven& driven) const {
+    return model_.hinges()[static_cast<std::size_t>(driven.motion->hinge)];
+  }
+
   const Model& model_;
   std::vector<Driven> driven_;
 };

@@ -8,7 +8,7 @@
 namespace withy {
 namespace {
 
-constexpr std::size_t relative_motion = motion_terms - 1;
+constexpr std::size_t relative_motion = motion_terms - 2, of_loads = motion_terms - 1;
 
 /// Σ m (a − g) of mass m with first moment s about the body frame's origin, under a unit of one of the twelve terms.
 Vector3 unit_force(std::size_t term, double m, const Vector3& s) {
@@ -78,7 +78,8 @@ std::string motion_term_name(std::size_t term) {
                                                                   "dvx/dt - gx",
                                                                   "dvy/dt - gy",
                                                                   "dvz/dt - gz",
-                                                                  "motion of outboard bodies"};
+                                                                  "motion of outboard bodies",
+                                                                  "loads at frames"};
   return names.at(term);
 }
 
@@ -100,23 +101,35 @@ MotionStiffness::MotionStiffness(const Model& model, std::size_t body, const Mot
   if (own_->S.size() == 0) return;
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const HingeNode& hinge = model.hinges()[h];
-    if (hinge.parent == static_cast<int>(body)) add_station(model, h, hinge.parent_frame, 1, twin);
-    if (h == body) add_station(model, h, hinge.child_frame, -1, twin);
+    if (hinge.parent == static_cast<int>(body))
+      stations_.push_back({h, 1, section_of(model, hinge.parent_frame, twin)});
+    if (h == body) stations_.push_back({h, -1, section_of(model, hinge.child_frame, twin)});
+  }
+  std::size_t index = 0;
+  for (const LoadNode& node : model.loads()) {
+    for (const FrameIndex& at : node.load->frames()) {
+      if (at.body == static_cast<int>(body) && at.frame >= 0)
+        loaded_.push_back({index, section_of(model, at.frame, twin)});
+      ++index;
+    }
   }
 }
 
-void MotionStiffness::add_station(const Model& model, std::size_t carried, int frame, double sign,
-                                  const MotionStiffness* twin) {
+std::shared_ptr<const MotionStiffness::Section> MotionStiffness::section_of(const Model& model, int frame,
+                                                                            const MotionStiffness* twin) const {
   const PointExpansion& at = model.bodies()[body_].frames[static_cast<std::size_t>(frame)].section;
-  if (twin != nullptr)
-    for (const Station& station : twin->stations_)
-      if (same_section(station.section->at, at)) return stations_.push_back({carried, sign, station.section});
+  for (const MotionStiffness* const known : {this, twin}) {
+    if (known == nullptr) continue;
+    for (const Station& s : known->stations_)
+      if (same_section(s.section->at, at)) return s.section;
+    for (const Loaded& l : known->loaded_)
+      if (same_section(l.section->at, at)) return l.section;
+  }
   const auto stiffness = [&](std::size_t axis) { return reduced(at.gamma[axis], own_->S); };
-  stations_.push_back(
-      {carried, sign, std::make_shared<const Section>(Section{at, {stiffness(0), stiffness(1), stiffness(2)}})});
+  return std::make_shared<const Section>(Section{at, {stiffness(0), stiffness(1), stiffness(2)}});
 }
 
-LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies) {
+LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads) {
   LoadRatio ratio;
   Eigen::MatrixXd& total = own_->total;
   if (total.size() == 0) return ratio;
@@ -125,10 +138,15 @@ LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies) {
   const auto values = term_values(B);
   total.setZero();
   for (std::size_t k = 0; k < own.size(); ++k) total += values[k] * own[k];
+  const auto add = [&total](const Vector3& force, const Section& section) {
+    for (Eigen::Index c = 0; c < 3; ++c) total += force[c] * section.stiffness[static_cast<std::size_t>(c)];
+  };
+  const auto loaded = loads.empty() ? std::span<const Loaded>() : std::span<const Loaded>(loaded_);
   for (const Station& s : stations_) {
-    const Vector3 force = s.sign * (B.R.transpose() * bodies[s.carried].force);
-    for (Eigen::Index c = 0; c < 3; ++c) total += force[c] * s.section->stiffness[static_cast<std::size_t>(c)];
+    const BodyMotion& carried = bodies[s.carried];
+    add(s.sign * (B.R.transpose() * (carried.force - carried.load)), *s.section);
   }
+  for (const Loaded& l : loaded) add(-(B.R.transpose() * loads[l.load].force), *l.section);
   own_->solver.compute(total);
   const Eigen::Index last = total.rows() - 1;
   ratio.least = own_->solver.eigenvalues()[0];
@@ -142,19 +160,25 @@ LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies) {
     }
     return sum;
   };
+  const auto works_of = [&work](const Section& section) {
+    return Vector3(work(section.stiffness[0]), work(section.stiffness[1]), work(section.stiffness[2]));
+  };
   for (std::size_t k = 0; k < own.size(); ++k) ratio.shares[k] = values[k] * work(own[k]);
   for (const Station& s : stations_) {
     const BodyMotion& carried = bodies[s.carried];
     const Vector3 force = s.sign * (B.R.transpose() * carried.force);
     const Vector3 moment = B.R.transpose() * (carried.mass_moment - carried.mass * B.p);
-    const Vector3 works(work(s.section->stiffness[0]), work(s.section->stiffness[1]), work(s.section->stiffness[2]));
+    const Vector3 works = works_of(*s.section);
     ratio.shares[relative_motion] += force.dot(works);
+    ratio.shares[of_loads] -= s.sign * (B.R.transpose() * carried.load).dot(works);
     for (std::size_t k = 0; k < own.size(); ++k) {
       const double share = s.sign * values[k] * unit_force(k, carried.mass, moment).dot(works);
       ratio.shares[k] += share;
       ratio.shares[relative_motion] -= share;
     }
   }
+  for (const Loaded& l : loaded)
+    ratio.shares[of_loads] -= (B.R.transpose() * loads[l.load].force).dot(works_of(*l.section));
   return ratio;
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,10 @@
 namespace withy {
 
 /// The twelve motions that induce stiffness (Banerjee & Dickens, J. Guidance 13, 1990), body axes: the products
-/// ω_x², ω_y², ω_z², ω_x ω_y, ω_y ω_z, ω_z ω_x; ω̇; v̇ − g; and, for bodies that carry others, what these do relative
-/// to the body.
-inline constexpr std::size_t motion_terms = 13;
-/// "wx wx", "wx wy", …, "dwx/dt", "ax-gx", "motion of outboard bodies".
+/// ω_x², ω_y², ω_z², ω_x ω_y, ω_y ω_z, ω_z ω_x; ω̇; v̇ − g; for bodies that carry others, what these do relative to the
+/// body; and the forces of loads at frames, its own and those of what it carries.
+inline constexpr std::size_t motion_terms = 14;
+/// "wx wx", "wx wy", …, "dwx/dt", "ax-gx", "motion of outboard bodies", "loads at frames".
 std::string motion_term_name(std::size_t term);
 
 /// The load of a body at one instant.
@@ -31,8 +32,8 @@ struct LoadRatio {
 };
 
 /// A second-order displacement ½ qᵀΓq does work against the inertia force −m (a − g) of the undeformed body, to which
-/// belongs the stiffness Σ m (a − g)·Γ; a body or section carried at a station adds (Σ m (a − g))·Γ there. Moments of
-/// carried bodies about their station are left out.
+/// belongs the stiffness Σ m (a − g)·Γ; a body or section carried at a station adds (Σ m (a − g))·Γ there. A load's
+/// force F at a frame does the work of −F·Γ. Moments, of carried bodies about their station and of loads, are left out.
 class MotionStiffness {
  public:
   /// For a flexible body of the model, which must outlive the object.
@@ -40,7 +41,9 @@ class MotionStiffness {
   ///   Null: there is none
   MotionStiffness(const Model& model, std::size_t body, const MotionStiffness* twin = nullptr);
   /// At the motions of the tree. Allocates nothing.
-  LoadRatio evaluate(const std::vector<BodyMotion>& bodies);
+  /// \param loads what loads exert at their frames, world axes, in the order of the model's loads and of the frames of
+  ///   each; empty: nothing
+  LoadRatio evaluate(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads = {});
 
  private:
   /// Of a section under unit force on it along body axes.
@@ -54,6 +57,11 @@ class MotionStiffness {
     double sign;
     std::shared_ptr<const Section> section;
   };
+  /// A frame of the body at which a load acts.
+  struct Loaded {
+    std::size_t load;  ///< index among the frames of all loads
+    std::shared_ptr<const Section> section;
+  };
   /// What equal bodies share, in coordinates in which K is 1.
   struct Own {
     explicit Own(const ModalShape& shape);
@@ -62,11 +70,13 @@ class MotionStiffness {
     Eigen::MatrixXd total;
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   };
-  void add_station(const Model& model, std::size_t carried, int frame, double sign, const MotionStiffness* twin);
+  [[nodiscard]] std::shared_ptr<const Section> section_of(const Model& model, int frame,
+                                                          const MotionStiffness* twin) const;
 
   std::size_t body_;
   std::shared_ptr<Own> own_;
   std::vector<Station> stations_;
+  std::vector<Loaded> loaded_;
 };
 
 }  // namespace withy

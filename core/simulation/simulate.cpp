@@ -291,7 +291,7 @@ MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const 
   return history;
 }
 
-std::string message_of_completed(const Run& run, const RunSummary& summary, const std::string& missed) {
+std::string message_of_completed(const Run& run, const Model& model, const RunSummary& summary) {
   std::string text;
   const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
   if (const std::vector<std::string>& names = run.stopped_by(); !names.empty()) {
@@ -300,8 +300,8 @@ std::string message_of_completed(const Run& run, const RunSummary& summary, cons
     add((names.size() > 1 ? "The events " : "The event ") + list +
         " ended the run at t = " + brief(summary.final.time) + " s.");
   }
-  if (!missed.empty()) add(missed);
-  if (!summary.suspected_jumps.empty()) add(note_on_jumps(summary.suspected_jumps));
+  if (const std::string missed = note_on_missed_events(model, summary.final); !missed.empty()) add(missed);
+  if (!summary.suspected_jumps.empty()) add(note_on_jumps(model, summary.suspected_jumps));
   for (const std::string& remark : run.stepper().remarks()) add("The integrator: " + remark + ".");
   if (const std::string closing = closing_text(run.equations(), run.stepper()); !closing.empty()) add(closing);
   return text;
@@ -335,7 +335,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   const double mean_step =
       (summary.reached - initial.time) / static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));
   if (stop.status == RunStatus::completed) {
-    summary.message = message_of_completed(run, summary, note_on_missed_events(model, summary.final));
+    summary.message = message_of_completed(run, model, summary);
     const std::string imbalanced = run.monitor().greatest_speed() > options.least_speed
                                        ? imbalance(summary, options, integrator, mean_step)
                                        : std::string();

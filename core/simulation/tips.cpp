@@ -1,17 +1,22 @@
 #include "withy/core/simulation/tips.hpp"
 
+#include <optional>
+
+#include "withy/core/plugin/measured_place.hpp"
+
 namespace withy {
 namespace {
 
 using Rotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-Tip tip_of(const Model& model, const std::string& name, const std::vector<int>& segments) {
+Tip tip_of(const Model& model, const std::string& name, const std::string& station, const std::vector<int>& segments) {
   Tip tip;
   tip.body = name;
+  tip.station = station;
   tip.at.setZero();
   for (const int b : segments) {
     const BodyNode& node = model.bodies()[static_cast<std::size_t>(b)];
-    const int frame = node.frame("tip");
+    const int frame = node.frame(station);
     tip.tip = {b, frame};
     tip.at += node.frames[static_cast<std::size_t>(frame)].section.X;
     tip.length += node.body->shape().length;
@@ -21,18 +26,24 @@ Tip tip_of(const Model& model, const std::string& name, const std::vector<int>& 
   return tip;
 }
 
-}  // namespace
-
-std::vector<Tip> tips(const Model& model) {
+std::vector<Tip> ends(const Model& model, bool measured) {
   std::vector<Tip> all;
   for (const BodyNode& node : model.bodies()) {
-    if (node.frame("tip") < 0) continue;
     const std::string& name = node.segment ? node.segment->whole : node.name;
     if (node.segment && node.segment->index > 0) continue;
-    all.push_back(tip_of(model, name, model.segments(name)));
+    if (node.frame("tip") >= 0) all.push_back(tip_of(model, name, "tip", model.segments(name)));
+    if (!measured || node.segment || node.body->shape().modes() == 0) continue;
+    const std::optional<MeasuredPlace> place = measured_place(*node.body);
+    if (place && place->name != "tip" && node.frame(place->name) >= 0)
+      all.push_back(tip_of(model, name, place->name, {model.body(name)}));
   }
   return all;
 }
+
+}  // namespace
+
+std::vector<Tip> tips(const Model& model) { return ends(model, false); }
+std::vector<Tip> measured_ends(const Model& model) { return ends(model, true); }
 
 std::array<double, 3> deflection(const Observation& seen, const Tip& tip) {
   if (!tip.in_segments()) return seen.deflection(tip.tip.body, tip.tip.frame);

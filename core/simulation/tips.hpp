@@ -11,9 +11,10 @@
 
 namespace withy {
 
-/// The frame "tip" of a body, or of one in segments.
+/// The frame "tip" of a body, or of one in segments; or another place that a flexible body is measured at.
 struct Tip {
-  std::string body;   ///< name, the whole's where it is in segments
+  std::string body;  ///< name, the whole's where it is in segments
+  std::string station = "tip";
   FrameIndex root;    ///< frame "root" of the body or of its first segment
   FrameIndex tip;     ///< frame "tip" of the body or of its last segment
   Vector3 at;         ///< place of the tip in the root's frame, undeformed [m]; of segments alone
@@ -24,6 +25,9 @@ struct Tip {
 
 /// The tip of every body that has one, in the order of the model's bodies.
 std::vector<Tip> tips(const Model& model);
+/// The same, and of flexible bodies that are measured elsewhere (measured_place) that station: where studies look at
+/// how bodies bend.
+std::vector<Tip> measured_ends(const Model& model);
 
 /// Displacement of a tip in the frame of its body's root [m]. Of a body in segments this is the exact difference of
 /// places in the world.

@@ -19,7 +19,8 @@ struct BodyMotion {
   Vector3 acceleration = Vector3::Zero();  ///< v̇ − g of the body frame's origin [m/s²]
   double mass = 0;                         ///< of the body and all that hangs on it [kg]
   Vector3 mass_moment = Vector3::Zero();   ///< Σ m p of the same [kg m]
-  Vector3 force = Vector3::Zero();         ///< Σ m (p̈ − g) of the same [N]: what the inboard hinge carries
+  Vector3 force = Vector3::Zero();  ///< Σ m (p̈ − g) of the same [N]: with `load` what the inboard hinge carries
+  Vector3 load = Vector3::Zero();   ///< of loads at frames of the same [N], which the hinge is spared
   /// Of what fields give mass that moves with the body frame, by place [1/s²]: at r from its origin the body feels less
   /// gradient · r beside what its frame's motion says.
   Matrix3 gradient = Matrix3::Zero();

@@ -5,9 +5,8 @@
 #include <limits>
 #include <unordered_map>
 
-#include "withy/core/deformation/mass_points.hpp"
+#include "withy/core/plugin/measured_place.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
-#include "withy/core/simulation/felt_motion.hpp"
 
 namespace withy {
 namespace {
@@ -44,6 +43,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       beyond_(beyond),
       validity_(validity),
       motion_(model),
+      felt_(model, equations),
       frequency_(model, equations),
       work_(std::max(work_size(&equations), work_size(beyond))),
       rates_(equations.size()),
@@ -69,7 +69,8 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
               MotionStiffness(model, b, fresh ? nullptr : &twin->stiffness),
               fresh ? std::make_shared<std::vector<Family>>(families_of(shape)) : twin->families,
               {}};
-    BodyValidity v{.name = node.name, .station = node.body->measured_station(), .load = {}, .highest = {}};
+    const std::optional<MeasuredPlace> place = measured_place(*node.body);
+    BodyValidity v{.name = node.name, .station = place ? place->name : "", .load = {}, .highest = {}};
     for (const Family& family : *w.families)
       v.highest.push_back({family.name, family.highest, 0, family.coordinates.size()});
     w.energies.resize(w.families->size());
@@ -160,12 +161,10 @@ bool ValidityWatch::look_at_loads(const State& state) {
   if (!equations_.derivatives(state.time, state.y, rates_, work_).ok()) return false;
   const Layout& layout = model_.layout();
   motion_.update(state.y, std::span<const double>(rates_).subspan(layout.positions, layout.speeds));
-  std::vector<BodyMotion> felt;
-  if (field_of(model_) != nullptr) felt = felt_motions(model_, equations_, state, motion_.bodies());
-  const std::vector<BodyMotion>& motions = felt.empty() ? motion_.bodies() : felt;
+  felt_.update(state, motion_.bodies());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     BodyValidity& v = validity_.bodies[i];
-    const LoadRatio load = bodies_[i].stiffness.evaluate(motions);
+    const LoadRatio load = bodies_[i].stiffness.evaluate(felt_.bodies(), felt_.at_frames());
     v.buckling = std::max(v.buckling, -load.least);
     if (load.size() > v.load.size()) {
       v.load = load;

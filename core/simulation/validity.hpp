@@ -11,6 +11,7 @@
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/busiest_state.hpp"
 #include "withy/core/simulation/carried_frequency.hpp"
+#include "withy/core/simulation/felt_motion.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 #include "withy/core/simulation/states_along.hpp"
 
@@ -28,7 +29,7 @@ struct HighestMode {
 /// a run, the steps at which bodies turned fastest, and the busiest of every few steps.
 struct BodyValidity {
   std::string name;
-  std::string station;  ///< whose deflection is held against the body's length (Body::measured_station)
+  std::string station;  ///< whose deflection is held against the body's length (measured_place)
   /// ω₁ of the structure that the body is part of, as it is carried and loaded: with what hangs on it, hinges held, at
   /// the last sample up to rate_time [rad/s].
   double fundamental = 0;
@@ -127,6 +128,7 @@ class ValidityWatch {
   const EquationsOfMotion* beyond_;
   Validity& validity_;
   TreeMotion motion_;
+  FeltMotion felt_;
   std::vector<Watched> bodies_;
   CarriedFrequency frequency_;
   Work work_;  ///< of whichever equations are evaluated

@@ -256,9 +256,11 @@ struct Felt {
     EXPECT_TRUE(c.equations->derivatives(c.scene.initial.time, c.scene.initial.y, rates, work).ok());
     const Layout& layout = c.scene.model->layout();
     motion.update(c.scene.initial.y, std::span<const double>(rates).subspan(layout.positions, layout.speeds));
-    bodies = felt_motions(*c.scene.model, *c.equations, c.scene.initial, motion.bodies());
+    FeltMotion felt(*c.scene.model, *c.equations);
+    felt.update(c.scene.initial, motion.bodies());
+    bodies = felt.bodies();
     boom = static_cast<std::size_t>(c.scene.model->body("boom"));
-    load = MotionStiffness(*c.scene.model, boom).evaluate(bodies);
+    load = MotionStiffness(*c.scene.model, boom).evaluate(bodies, felt.at_frames());
   }
   LoadedScene c;
   TreeMotion motion;

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "withy/core/simulation/diagnosis.hpp"
 #include "withy/tests/simulation/oscillator.hpp"
 
 namespace withy {
@@ -68,6 +69,47 @@ TEST(BadEnd, a_load_that_is_not_finite_is_named_and_the_last_state_kept) {
       expect_results_kept(run, summary);
     }
   }
+}
+
+/// A load with a state of its own, whose rate is no number from a time on.
+class BoundIntegral final : public BoundLoad, private ContinuousPart {
+ public:
+  std::size_t scratch() const override { return 0; }
+  void add(double, std::span<const double>, std::span<const double>, std::span<double>,
+           std::span<double>) const noexcept override {}
+  std::vector<double> discontinuities() const override { return {}; }
+  double end() const override { return 0; }
+  void begin(State&) const override {}
+  const ContinuousPart* continuous() const override { return this; }
+
+ private:
+  std::size_t states() const override { return 1; }
+  std::string name(std::size_t) const override { return "integral"; }
+  void begin(const LoadView&, std::span<double> z) const noexcept override { z[0] = 0; }
+  void rates(const LoadView& view, std::span<double> rates) const noexcept override {
+    rates[0] = view.t > 0.5 ? nan : 1;
+  }
+  void add(const LoadView&, std::span<double>) const noexcept override {}
+};
+
+class IntegralLoad final : public Load {
+ public:
+  std::unique_ptr<BoundLoad> bind(const Model&) const override { return std::make_unique<BoundIntegral>(); }
+};
+
+// The last state is before: the rate fails in a step from there.
+TEST(BadEnd, a_state_of_a_load_whose_rate_ceases_to_be_finite_is_named) {
+  Model model = boom();
+  model.add_load("memory", IntegralLoad());
+  const FunctionEquations equations = boom_equations(model, restoring);
+  State last = model.reference_state();
+  last.time = 0.49;
+  EXPECT_TRUE(nonfinite_rates(model, last, 0.001).states.empty());
+  const NonfiniteRates found = nonfinite_rates(model, last, 0.1);
+  EXPECT_EQ(found.states, std::vector<std::size_t>{0});
+  EXPECT_GT(found.time, 0.5);
+  EXPECT_THAT(describe_nonfinite(model, equations, last, 0.1),
+              HasSubstr("the rate of 'memory.integral' is not finite at t = 0.5"));
 }
 
 TEST(BadEnd, accelerations_that_are_not_finite_are_named) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "withy/core/simulation/felt_motion.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/core/simulation/step_watch.hpp"
@@ -19,7 +20,11 @@ namespace {
 class EveryLoad : public StepWatch {
  public:
   explicit EveryLoad(const Made& m)
-      : m_(m), motion_(*m.scene.model), rates_(m.equations->size()), work_(m.equations->make_work()) {
+      : m_(m),
+        motion_(*m.scene.model),
+        felt_(*m.scene.model, *m.equations),
+        rates_(m.equations->size()),
+        work_(m.equations->make_work()) {
     for (std::size_t b = 0; b < m.scene.model->bodies().size(); ++b)
       if (m.scene.model->layout().modes(b) != nullptr) stiffness_.emplace_back(*m.scene.model, b);
     greatest.resize(stiffness_.size());
@@ -34,11 +39,13 @@ class EveryLoad : public StepWatch {
     const Layout& layout = m_.scene.model->layout();
     ASSERT_TRUE(m_.equations->derivatives(state.time, state.y, rates_, work_).ok());
     motion_.update(state.y, std::span<const double>(rates_).subspan(layout.positions, layout.speeds));
+    felt_.update(state, motion_.bodies());
     for (std::size_t i = 0; i < stiffness_.size(); ++i)
-      greatest[i] = std::max(greatest[i], stiffness_[i].evaluate(motion_.bodies()).size());
+      greatest[i] = std::max(greatest[i], stiffness_[i].evaluate(felt_.bodies(), felt_.at_frames()).size());
   }
   const Made& m_;
   TreeMotion motion_;
+  FeltMotion felt_;
   std::vector<MotionStiffness> stiffness_;
   std::vector<double> rates_;
   Work work_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/simulation/felt_motion.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 #include "withy/core/simulation/tree_motion.hpp"
 #include "withy/tests/simulation/made_scene.hpp"
@@ -15,8 +16,10 @@ namespace withy::test {
 inline LoadRatio load_of(const Made& m, const std::string& body, const std::vector<double>& u_dot) {
   TreeMotion motion(*m.scene.model);
   motion.update(m.scene.initial.y, u_dot);
+  FeltMotion felt(*m.scene.model, *m.equations);
+  felt.update(m.scene.initial, motion.bodies());
   MotionStiffness stiffness(*m.scene.model, static_cast<std::size_t>(m.scene.model->body(body)));
-  return stiffness.evaluate(motion.bodies());
+  return stiffness.evaluate(felt.bodies(), felt.at_frames());
 }
 
 /// A cantilever along x of length 1, EI = 10, 1 kg, with a mass at its tip, welded to the world.

@@ -68,5 +68,28 @@ TEST(DrivenTrees, a_hinge_that_has_left_its_motion_is_told_and_the_run_inaccurat
   EXPECT_EQ(seen.status, RunStatus::completed) << seen.message;
 }
 
+/// Goes on evenly, and ceases to say where.
+class LostMotion final : public Motion {
+ public:
+  bool locks() const override { return false; }
+  MotionPoint at(double t) const noexcept override {
+    return {t > 1 ? std::numeric_limits<double>::quiet_NaN() : t, 1, 0};
+  }
+  std::vector<double> discontinuities() const override { return {}; }
+  double end() const override { return 0; }
+};
+
+TEST(DrivenTrees, a_law_without_a_coordinate_makes_the_run_inaccurate_and_is_named) {
+  Made m(driven_rod("{type: constant-rate, hinge: pivot, rate: 1}", "{name: dopri5, rtol: 1e-9}"));
+  Model model(m.scene.model->bodies(), m.scene.model->hinges(), m.scene.model->gravity());
+  model.add_motion("lost", "pivot", std::make_shared<LostMotion>());
+  m.scene.model = std::make_shared<const Model>(std::move(model));
+  m.equations = m.scene.formulation->compile(m.scene.model);
+  const RunSummary kept = run_of(m, 0.9, 0.1), lost = run_of(m, 2, 0.1);
+  EXPECT_EQ(kept.status, RunStatus::completed) << kept.message;
+  EXPECT_EQ(lost.status, RunStatus::inaccurate);
+  EXPECT_NE(lost.message.find("Motion 'lost' has no finite coordinate at t = "), std::string::npos) << lost.message;
+}
+
 }  // namespace
 }  // namespace withy::test

@@ -28,6 +28,23 @@ TEST(MotionStiffness, a_carried_mass_buckles_a_column_at_pi_squared_over_four) {
   EXPECT_LT(std::abs(load.least), std::abs(expected)) << "modes can only be stiffer";
 }
 
+// A dead force does what a weight of the same size does, wherever on what the column carries it acts.
+TEST(MotionStiffness, a_force_buckles_a_column_as_a_weight_does) {
+  const std::string bending = "bending_y: {stiffness: 10, modes: 3}";
+  const LoadRatio weight = load_of(Made(cantilever("[-9.81, 0, 0]", 1e-6, 0.5, bending)), "beam", {0, 0, 0});
+  for (const char* frame : {"beam.tip", "tip"}) {
+    const std::string push = "loads: {push: {type: force, frame: " + std::string(frame) + ", value: [-4.905, 0, 0]}}\n";
+    const LoadRatio force = load_of(Made(cantilever("[0, 0, 0]", 1e-6, 0.5, bending) + push), "beam", {0, 0, 0});
+    EXPECT_NEAR(force.least, weight.least, 1e-6) << frame;
+    EXPECT_NEAR(force.shares.back(), force.least, 1e-6) << frame << ": all of it from the load";
+  }
+  // What holds a weight up at its own body spares the column.
+  const LoadRatio held = load_of(Made(cantilever("[-9.81, 0, 0]", 1e-6, 0.5, bending) +
+                                      "loads: {hold: {type: force, frame: tip, value: [4.905, 0, 0]}}\n"),
+                                 "beam", {0, 0, 0});
+  EXPECT_LT(held.size(), 1e-6);
+}
+
 // Bending and twist under a transverse load at the tip: P L^2 / sqrt(EI GJ) = 4.0154 in four modes of each kind
 // (theory, section 6), in either sense.
 TEST(MotionStiffness, a_transverse_load_buckles_laterally) {

@@ -28,7 +28,10 @@ double at(const TermForces& forces, Term term, std::size_t i) { return forces[st
 double imbalance(const TermForces& f, std::size_t i, const std::vector<Term>& inertia,
                  const std::vector<Term>& velocity) {
   double left = at(f, Term::stiffness, i) + at(f, Term::damping, i), size = std::abs(left);
-  double right = at(f, Term::weight, i) + at(f, Term::loads, i);
+  double right = 0;
+  for (const Term zero : {Term::weight, Term::loads})
+    for (std::size_t order = 0; order < 4; ++order)
+      right += at(f, static_cast<Term>(static_cast<std::size_t>(zero) + order), i);
   for (const Term t : inertia) {
     left += at(f, t, i);
     size += std::abs(at(f, t, i));

@@ -14,6 +14,7 @@
 #include "withy/core/analysis/fastest_pole.hpp"
 #include "withy/core/model/closing.hpp"
 #include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/plugin/measured_place.hpp"
 #include "withy/core/shape/section_fields.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/tests/study/certified_run.hpp"
@@ -110,16 +111,16 @@ void expect_drifts(const Certified& c, const Certified& tight) {
   }
 }
 
-/// Of a body's measured station, over its length. One that is no tip has no frame: its expansion is evaluated.
+/// Of the place that a body is measured at, over its length. Where that is no tip its expansion is evaluated.
 double deflection_over_length(const Certified& c, const State& state, std::size_t b) {
   const BodyNode& node = c.model().bodies()[b];
-  const std::string station = node.body->measured_station();
+  const MeasuredPlace place = measured_place(*node.body).value();
   const double length = node.body->shape().length;
-  if (station == "tip") {
-    const auto d = c.equations().deflection(state.y, static_cast<int>(b), node.frame(station));
+  if (place.name == "tip") {
+    const auto d = c.equations().deflection(state.y, static_cast<int>(b), node.frame("tip"));
     return std::hypot(d[0], d[1], d[2]) / length;
   }
-  const PointExpansion at = node.body->station(station).value();
+  const PointExpansion& at = place.at;
   const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + c.model().layout().modes(b)->position, at.phi.cols());
   Vector3 d = at.phi * q;
   for (std::size_t k = 0; k < 3; ++k) d[static_cast<Eigen::Index>(k)] += 0.5 * q.dot(at.gamma[k] * q);

@@ -90,8 +90,9 @@ TEST(FindReference, AModeThatTheMotionDoesNotExciteIsNotTakenForTheEndOfTheSerie
     goal.first = {"", "", 2, "dop853", 1e-6, {}, {}};
     goal.levels = 8;
     goal.kinds = kinds;
+    // What the plate's kinematics lacks is in all of them.
     goal.enough = [&](const Reference& r) {
-      return r.point.modes >= least && relative_error(r.own, r.scales) <= asked;
+      return r.point.modes >= least && relative_error(r.own, r.scales) - r.third_order <= asked;
     };
     return *find_reference(at, plugins(), outputs, goal, {}).reference;
   };

@@ -1,0 +1,32 @@
+#include "withy/core/plugin/measured_place.hpp"
+
+namespace withy {
+
+std::string MeasuredPlace::in_words() const {
+  if (name == "tip") return "the tip";
+  if (name.starts_with("at_")) return "the section at " + name.substr(3) + " % of the length";
+  return "station '" + name + "'";
+}
+
+std::optional<MeasuredPlace> measured_place(const Body& body) {
+  // A tip gives most of all where it is free: a place that gives this much more is where the body bends.
+  constexpr double much_more = 4;
+  constexpr int parts = 20, percent = 5;
+  const ModalShape& shape = body.shape();
+  const std::string name = body.measured_station();
+  std::optional<PointExpansion> station = name.empty() ? std::nullopt : body.station(name);
+  std::optional<MeasuredPlace> most;
+  if (station) most = {name, *std::move(station)};
+  double greatest = most ? much_more * shape.compliance(most->at) : 0;
+  for (int k = 1; k < parts && shape.modes() > 0; ++k) {
+    std::optional<PointExpansion> at = body.station(shape.length * k / parts);
+    if (!at) break;  // it has none along itself
+    const double gives = shape.compliance(*at);
+    if (gives <= greatest) continue;
+    greatest = gives;
+    most = {"at_" + std::to_string(percent * k), *std::move(at)};
+  }
+  return most;
+}
+
+}  // namespace withy
