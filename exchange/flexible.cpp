@@ -83,8 +83,13 @@ class FlexibleReader {
     const Link& link = tree_.links[static_cast<std::size_t>(index)];
     if (!value.has("mass_per_length") && link.mass > 0)
       parameters.emplace_back("mass_per_length", Value(link.mass / flexible.length, value.place()));
-    for (const Value::Member& member : value.members())
+    for (const Value::Member& member : value.members()) {
+      if (member.first == "type" || member.first == "length" || member.first == "frames")
+        diagnostics_.error(member.second.place(),
+                           "a flexible link is a beam as long as its joints are apart, which are its frames; leave '" +
+                               member.first + "' out");
       if (member.first != "tip" && member.first != "root" && member.first != "y") parameters.push_back(member);
+    }
     flexible.parameters = Value::map(std::move(parameters), value.place());
     return flexible;
   }

@@ -49,7 +49,9 @@ Joint MjcfJoints::read(const Element& element, const std::string& name) const {
   if (type == "hinge" || type == "slide") joint.axis = a.direction("axis", Vector3::UnitZ());
   springs(a, unit, joint);
   if (const auto range = type == "free" ? std::nullopt : a.numbers("range", 2, 2)) {
-    const std::string words = fmt::format("its range {} to {} is not enforced", unit * (*range)[0], unit * (*range)[1]);
+    const double at_zero = type == "ball" ? 0 : a.number("ref", 0);  // the file's coordinate where the scene's is zero
+    const std::string words = fmt::format("its range {} to {} is not enforced", unit * ((*range)[0] - at_zero),
+                                          unit * ((*range)[1] - at_zero));
     joint.remark = words + (type == "ball" ? ": it limits the whole angle" : ": see hinge-limit");
   }
   leave_out(a, joint, "armature");

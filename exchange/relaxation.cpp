@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/model/compiled_model.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/scene/names.hpp"
@@ -18,7 +19,7 @@ bool has_relaxation(const Tree& tree) {
 }
 
 void settle_relaxation(Tree& tree, const Scene& rigid, Diagnostics& diagnostics) {
-  const auto equations = rigid.formulation->compile(rigid.model);
+  const auto equations = compile_model(*rigid.formulation, rigid.model);
   const DenseSystem system = equations->system(rigid.initial.time, rigid.initial.y);
   const auto size = static_cast<Eigen::Index>(system.size);
   Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(system.mass.data(), size, size);

@@ -126,10 +126,14 @@ class SceneWriter {
 
   void springs() {
     std::string all;
+    std::set<std::string> taken;
     for (const Joint& joint : tree_.joints) {
       if (joint.stiffness == 0 && joint.damping == 0) continue;
-      all += fmt::format("  {}_spring: {{type: hinge-spring, hinge: {}, stiffness: {}, damping: {}", joint.name,
-                         joint.name, joint.stiffness, joint.damping);
+      // Names have 64 letters at most.
+      std::string name = joint.name.substr(0, 57) + "_spring";
+      for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_spring{}", joint.name.substr(0, 52), i);
+      all += fmt::format("  {}: {{type: hinge-spring, hinge: {}, stiffness: {}, damping: {}", name, joint.name,
+                         joint.stiffness, joint.damping);
       if (joint.free_position != 0) all += fmt::format(", free_position: {}", joint.free_position);
       all += "}\n";
     }

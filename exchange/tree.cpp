@@ -17,7 +17,7 @@ std::string scene_name(const std::string& name) {
   for (char& c : made)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') c = '_';
   if (made.empty() || (std::isalpha(static_cast<unsigned char>(made.front())) == 0 && made.front() != '_'))
-    made.insert(0, "_");
+    made = '_' + made.substr(0, 63);
   return name == "world" ? "_world" : made;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "attributes.hpp"
 #include "withy/scene/names.hpp"
@@ -58,6 +59,12 @@ void describe_joint(const Element& element, Joint& joint, Tree& tree, Diagnostic
     if (limit->find("lower") != nullptr || limit->find("upper") != nullptr)
       joint.remark = fmt::format("its range {} to {} is not enforced: see hinge-limit", a.number("lower", 0),
                                  a.number("upper", 0));
+    const bool angular = joint.type != "prismatic";
+    for (const auto& [key, unit] :
+         {std::pair("effort", angular ? "N m" : "N"), std::pair("velocity", angular ? "rad/s" : "m/s")})
+      if (const double most = a.number(key, 0); most != 0)
+        joint.remark +=
+            fmt::format("{}{} of {} {} at most is not enforced", joint.remark.empty() ? "" : "; ", key, most, unit);
   }
   if (dynamics != nullptr) {
     const Attributes a(*dynamics, diagnostics);

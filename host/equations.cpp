@@ -49,6 +49,7 @@ std::vector<Port> state_ports(const Model& model) {
 std::shared_ptr<const study::Prepared> continuous(const Scene& scene, const std::string& formulation) {
   std::shared_ptr<const study::Prepared> prepared =
       formulation.empty() ? scene.prepare() : Scene(scene).formulation(formulation).prepare();
+  study::check_one_formulation(*prepared, "an integrator of your own");
   if (const std::string acting = acting_event(prepared->model()); !acting.empty())
     throw study::InputError(
         fmt::format("{}: /events/{}: an event acts on the motion, which an integrator of your own does not know; step "

@@ -88,7 +88,7 @@ const std::vector<std::string>& Scene::changes() const { return parts_->changes;
 std::string Scene::values() const {
   const SceneValues& values = parts_->values;
   if (!values.problems().errors().empty()) check();  // which reports them with every other problem
-  return value_json(values.root()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_line(value_json(values.root()));
 }
 const Library& Scene::library() const { return parts_->library; }
 
@@ -123,7 +123,7 @@ Result Scene::run(const Follow& follow) const {
   result.message = summary.message;
   nlohmann::ordered_json json = run_json(prepared->scene, summary, certificate);
   if (!statistics.empty()) json["outputs"] = statistics_json(statistics);
-  result.json = json.dump();
+  result.json = json_line(json);
   if (summary.status == RunStatus::completed && !summary.message.empty()) library().log(summary.message);
   return result;
 }

@@ -14,10 +14,7 @@ namespace {
 
 std::shared_ptr<const study::Prepared> with_one_formulation(const Scene& scene) {
   std::shared_ptr<const study::Prepared> prepared = scene.prepare();
-  if (prepared->escalates())
-    throw study::InputError(prepared->scene.file +
-                            ": /formulation: got 'auto', which changes the equations along a run; a simulation that is "
-                            "stepped needs one formulation by name");
+  study::check_one_formulation(*prepared, "a simulation that is stepped");
   return prepared;
 }
 

@@ -35,7 +35,7 @@ void drop_python_objects(Value& parts) {
 
 /// Without what decides on where a run begins and ends and on what it shows, but not on the steps from a state.
 Value deciding(Value source) {
-  drop(source, {"name", "time", "outputs", "initial"});
+  drop(source, {"name", "time", "outputs", "initial", "closing"});  // the last says how `initial` closed loops
   for (auto& [key, value] : source.members())
     if (key == "bodies" || key == "loads") drop_python_objects(value);
   return source;

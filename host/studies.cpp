@@ -2,17 +2,18 @@
 /// Studies of a scene, as JSON text.
 #include <nlohmann/json.hpp>
 
-#include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/host/scene.hpp"
 #include "withy/host/stopped.hpp"
 #include "withy/results/advice_json.hpp"
 #include "withy/results/advice_text.hpp"
 #include "withy/results/comparison_report.hpp"
+#include "withy/results/json_text.hpp"
 #include "withy/results/linear_files.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/scene_edit.hpp"
 #include "withy/results/trade_files.hpp"
 #include "withy/scene/asked_outputs.hpp"
+#include "withy/study/candidates.hpp"
 #include "withy/study/comparison.hpp"
 #include "withy/study/left_out.hpp"
 
@@ -49,14 +50,13 @@ std::string advice_of(const study::Prepared& prepared, const study::Outputs& out
   const AdviceQuestion question{prepared, outputs, accuracy};
   if (!advice.choice) {
     const std::string why = advice.interrupted ? "interrupted" : no_advice_text(advice, question);
-    return search_json(question, advice, why).dump();
+    return json_line(search_json(question, advice, why));
   }
   std::vector<std::string> changes;
   for (const study::Change& change : study::new_changes(prepared.scene, advice.choice->point, evaluator.registry()))
     changes.push_back(change.text());
-  return advice_json(question, advice, study::left_out(evaluator.model(advice.choice->point)), changes,
-                     scene_lines(changes))
-      .dump();
+  return json_line(advice_json(question, advice, study::left_out(evaluator.model(advice.choice->point)), changes,
+                               scene_lines(changes)));
 }
 
 }  // namespace
@@ -72,19 +72,18 @@ std::string Scene::compare(const std::vector<std::string>& formulations, const s
                             return study::simulate(prepared, library().registry(), output, control_of(follow));
                           },
                           outputs)});
-  return comparison_json(compared, reference, {}, {}, library().registry()).dump();
+  return json_line(comparison_json(compared, reference, {}, {}, library().registry()));
 }
 
 std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follow,
                          const std::vector<std::string>& outputs) const {
   const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
-  const study::Axes usual{
-      studied_formulations(library().registry()), {""}, {1, 2, 3}, {"dopri5", "imex"}, {1e-4, 1e-6}, {}};
-  study::TradeStudy study(*base, library().registry(), study::points_of(axes_of(axes, usual)),
+  const study::Axes all = study::trade_axes(axes_of(axes, {}), base->scene, library().registry());
+  study::TradeStudy study(*base, library().registry(), study::points_of(all),
                           {jobs, nullptr, control_of(follow), outputs});
   study.run();
   const auto results = study.results();
-  return trade_json(base->scene, study, results, study::pareto_front(results)).dump();
+  return json_line(trade_json(base->scene, study, results, study::pareto_front(results)));
 }
 
 std::string Scene::advise(const std::string& accuracy, const std::vector<std::string>& outputs, const Axes& axes,
@@ -109,7 +108,7 @@ std::string Scene::modes(const std::vector<std::string>& lock, const Follow& fol
   const study::ModesOf found = study::sweep_modes(
       base->values, library().registry(), [](const study::Prepared& prepared) { return prepared.scene.initial; },
       {lock, {}}, {}, false, {}, control_of(follow));
-  return modes_json(found).dump();
+  return json_line(modes_json(found));
 }
 
 std::string Scene::linearize(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
@@ -117,7 +116,7 @@ std::string Scene::linearize(const std::vector<std::string>& inputs, const std::
   const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
   const study::Configuration at(*base, base->scene.initial, {lock, {}});
   try {
-    return linear_model_json(at, study::linear_model(at, {inputs, outputs})).dump();
+    return json_line(linear_model_json(at, study::linear_model(at, {inputs, outputs})));
   } catch (const std::domain_error& e) {
     throw SimulationStopped("singular", e.what(), base->scene.initial.time);
   }

@@ -48,8 +48,10 @@ std::string documentation_page(const Description& d, const study::Prepared& prep
       "0}}pre{{background:#f4f4f4;padding:1em}}</style></head>\n<body>\n<h1>{0}</h1>\n"
       "<p>An FMU of FMI {1}.0 for {2}, made by withy " WITHY_VERSION
       " in the formulation <code>{3}</code>.</p>\n"
-      "<ul>\n<li>Inputs are efforts of loads; outputs are the columns of <code>withy run</code>, in SI units.</li>\n"
-      "<li>Parameters are numbers of the scene, set before initialization ends.</li>\n"
+      "<ul>\n<li>Inputs are efforts of loads and what motions prescribe; outputs are the columns of <code>withy "
+      "run</code>, in SI units.</li>\n"
+      "<li>Parameters are numbers of the scene, set before initialization ends; tunable ones between steps and at "
+      "events too.</li>\n"
       "<li>Co-simulation integrates with <code>{4}</code>, its tolerance that of the scene or of the importer.</li>\n"
       "<li>Derivatives of state derivatives are exact; those of other outputs are central differences of eighth "
       "order.</li>\n</ul>\n<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>what</th><th>start</th>"

@@ -246,8 +246,9 @@ void Instance::make_session() {
     mode_ = Mode::step;
     return early_.has_value();
   };
-  session_ = std::make_unique<Session>(p.model(), *p.equations, *p.scene.integrator, dynamics_->start(),
-                                       SessionOptions{p.scene.deflection_limit, p.scene.events, between});
+  session_ = std::make_unique<Session>(
+      p.model(), *p.equations, *p.scene.integrator, dynamics_->start(),
+      SessionOptions{p.scene.deflection_limit, p.scene.events, between, study::has_own_energy(p.scene)});
 }
 
 const Variable& Instance::variable(std::uint32_t reference) const {
@@ -314,6 +315,7 @@ void Instance::set_one(const Variable& v, double value) {
     if (is_in(Mode::instantiated | Mode::initialization)) stale_ = stale_ || parameters_[v.index] != value;
     parameters_[v.index] = value;
   } else if (v.kind == Variable::Kind::state) {
+    if (dynamics_->driven(v.index)) return;  // it is what the motion says, at another start too
     starts_[v.index] = value;
     is_started_[v.index] = 1;
     if (!stale_) dynamics_->set_state(v.index, value);

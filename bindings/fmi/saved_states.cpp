@@ -21,6 +21,11 @@ std::string_view text_of(std::span<const unsigned char> bytes) {
 
 /// Writes or reads everything that the calls to come depend on.
 void Instance::remember(Memory& memory) {
+  Kind kind = kind_;
+  memory(kind);
+  if (kind != kind_)
+    throw std::invalid_argument(
+        "the state is of an instance of the other kind: of model exchange or of co-simulation, not as this one");
   memory(mode_);
   bool tolerated = tolerance_.has_value();
   double tolerance = tolerance_.value_or(0), start = start_;

@@ -121,10 +121,7 @@ std::size_t indicator_count(const Scene& scene) {
 
 Variables variables_of(const study::Prepared& prepared, Registry& registry) {
   const std::string& file = prepared.scene.file;
-  if (prepared.escalates())
-    throw study::InputError(file +
-                            ": /formulation: got 'auto', which changes the equations along a run; an FMU needs one "
-                            "formulation by name");
+  study::check_one_formulation(prepared, "an FMU");
   if (const std::string acting = acting_event(prepared.model()); !acting.empty())
     throw study::InputError(
         fmt::format("{}: /events/{}: an event acts on the motion, which an FMU cannot carry; leave "

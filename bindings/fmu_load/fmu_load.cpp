@@ -163,9 +163,10 @@ class Reader {
       const std::size_t equals = text.rfind('=');
       double value = 0;
       const char* const end = text.data() + text.size();
-      const bool whole = equals != std::string::npos &&
-                         std::from_chars(text.data() + equals + 1, end, value).ptr == end && equals + 1 < text.size() &&
-                         std::isfinite(value);
+      const auto read =
+          std::from_chars(text.data() + (equals == std::string::npos ? text.size() : equals + 1), end, value);
+      const bool whole =
+          equals != std::string::npos && read.ec == std::errc() && read.ptr == end && std::isfinite(value);
       if (!whole) {
         error(item, fmt::format("got '{}'; need name=number, of a parameter of the FMU", text));
       } else if (const FmuVariable* v = variable(text.substr(0, equals), "parameter", item)) {

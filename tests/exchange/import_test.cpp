@@ -86,6 +86,7 @@ TEST(Import, ErrorsOfWhatStandsBesideHaveTheirPlacesThere) {
               HasSubstr("did you mean 'bending_"));
   EXPECT_THAT(with("  upper: {tip: [0, 0, 0]}\n"), HasSubstr("no length"));
   EXPECT_THAT(with("  upper: {tip: elbow, y: [3, 0, 0]}\n"), HasSubstr("along the beam"));
+  EXPECT_THAT(with("  upper: {tip: elbow, type: beam}\n"), HasSubstr("leave 'type' out"));
   const Scratch dat(".dat", text_of_file(model_file("tower.dat")));
   EXPECT_THAT(problems_of({dat.file(), {}, false, 0, 0}), HasSubstr("--length is missing"));
   std::string text = text_of_file(model_file("tower.dat"));

@@ -301,6 +301,13 @@ TEST(Mjcf, WhatAJointOrBodyLosesIsTold) {
   EXPECT_THAT(scene.text, HasSubstr("its range 0 to 0.5 is not enforced: it limits the whole angle"));
 }
 
+// A scene's coordinate is zero where the file's is `ref`.
+TEST(Mjcf, ARangeIsToldInTheCoordinateOfTheScene) {
+  const ImportedScene scene = model_of(R"(<compiler angle="radian"/><worldbody><body name="b">
+<joint name="j" axis="0 1 0" ref="0.5" range="-0.25 1.5"/><geom size="0.1"/></body></worldbody>)");
+  EXPECT_THAT(scene.text, HasSubstr("its range -0.75 to 1 is not enforced: see hinge-limit"));
+}
+
 TEST(Mjcf, WhatItCannotReadIsRefusedWithItsPlace) {
   std::string problems;
   try {

@@ -44,6 +44,26 @@ TEST(Urdf, TheDoublePendulumMovesAsLagrangesEquationsSay) {
   }
 }
 
+/// Names of scenes have 64 letters; what the importer makes of a joint's name has them too.
+TEST(Urdf, LongNamesGiveScenesThatAreRead) {
+  const std::string stem(62, 'j');
+  std::string text = "<robot name='r'><link name='a'/>";
+  for (const char* end : {"1", "2", "3"})
+    text += "<link name='b" + std::string(end) +
+            "'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' "
+            "ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='" +
+            stem + end + "' type='continuous'><parent link='a'/><child link='b" + end +
+            "'/><dynamics damping='0.5'/></joint>";
+  text +=
+      "<link name='c'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' "
+      "iyz='0'/></inertial></link><joint name='" +
+      std::string(64, '7') + "' type='continuous'><parent link='a'/><child link='c'/></joint></robot>";
+  const Scratch file("long.urdf", text);
+  const std::string scene = imported({file.file(), "", false, 0, 0}).text;
+  for (const char* end : {"_spring:", "_spring2:", "_spring3:"}) EXPECT_THAT(scene, testing::HasSubstr(end));
+  EXPECT_EQ(host::Equations(scene_of({file.file(), "", false, 0, 0})).size(), 8U);
+}
+
 /// A link that a file beside makes a beam moves as the same arm written by hand, in axes of its own.
 TEST(Urdf, AFlexibleLinkIsTheBeamThatTheFileBesideSays) {
   host::Equations f(scene_of({model_file("double-pendulum.urdf"), model_file("bending-arm.yaml"), false, 0, 0}));

@@ -239,6 +239,22 @@ TEST(FmuParameters, LoopsAreClosedAtTheStartTimeOfTheHost) {
   EXPECT_NEAR(i.get(fmu.reference("coupler.tip.y")), 0.8 * std::sin(pivot), 1e-12);
 }
 
+/// Hosts write back every start value before they say when they start: a motion then is where it is at that time.
+TEST(FmuParameters, StartValuesOfDrivenHingesHoldNoMotionBack) {
+  const Unpacked& fmu = exported(SCENES "/spin-up.yaml", 3);
+  Instance3 plain(fmu, true), told(fmu, true);
+  for (const char* name : {"axle", "axle.rate"})
+    EXPECT_EQ(told.set(fmu.reference(name), std::stod(fmu.variables.at(fmu.reference(name)).attributes.at("start"))),
+              fmi3OK);
+  for (const Instance3* i : {&plain, &told}) {
+    EXPECT_EQ(i->fmi.EnterInitializationMode(i->c, false, 0, 2, false, 0), fmi3OK) << i->heard.last;
+    EXPECT_EQ(i->fmi.ExitInitializationMode(i->c), fmi3OK) << i->heard.last;
+  }
+  EXPECT_GT(plain.get(fmu.reference("axle")), 0.01);
+  for (const char* name : {"axle", "axle.rate"})
+    EXPECT_EQ(told.get(fmu.reference(name)), plain.get(fmu.reference(name))) << name;
+}
+
 /// Numbers of vectors that the file has not, or has in another form, are parameters as others are.
 TEST(FmuParameters, AreElementsOfVectorsThatTheFileLeavesOut) {
   const std::filesystem::path file = scratch() / "plain.yaml";
