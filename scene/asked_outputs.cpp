@@ -99,22 +99,33 @@ const Quantity* quantity_of(const Value& scene, const std::string& word, const s
   return first;
 }
 
-/// The coordinate at the beginning of a text, and its text: a dot that no digit follows is not of it.
+/// The coordinate at the beginning of a text, and its text: a dot that no digit follows is not of it. No text where
+/// anything but a component follows.
 std::pair<double, std::string> coordinate_at(std::string_view text) {
   double x = 0;
-  const char* end = std::from_chars(text.data(), text.data() + text.size(), x, std::chars_format::fixed).ptr;
-  if (end != text.data() && end[-1] == '.') --end;
-  return {x, std::string(text.data(), end)};
+  const char *const begin = text.data(), *const behind = begin + text.size();
+  const char* end = std::from_chars(begin, behind, x).ptr;
+  if (end != begin && end[-1] == '.') --end;
+  return {x, end == behind || *end == '.' ? std::string(begin, end) : std::string()};
 }
 
-/// The argument that stands at the beginning of what is behind an @: a word, or a frame.
+/// Whether a part of a name behind a frame says which number of the output is meant, or what of it over the run.
+bool says_number(std::string_view part) {
+  constexpr std::array<std::string_view, 6> words = {"rate", "min", "max", "mean", "rms", "integral"};
+  if (std::find(words.begin(), words.end(), part) != words.end() || part == "qw") return true;
+  constexpr std::array<std::string_view, 7> vectors = {"", "q", "r", "v", "w", "a", "alpha"};
+  const bool along = part.ends_with('x') || part.ends_with('y') || part.ends_with('z');
+  return along && std::find(vectors.begin(), vectors.end(), part.substr(0, part.size() - 1)) != vectors.end();
+}
+
+/// The argument that stands at the beginning of what is behind an @: a word, or a frame, which may be a station.
 std::string argument_of(const Value& scene, const Quantity& q, std::string_view text) {
   const std::vector<std::string> parts = parts_of(text);
   const Value* bodies = scene.find("bodies");
   const Value* body = q.of == Of::frame && bodies != nullptr ? bodies->find(parts[0]) : nullptr;
   if (body == nullptr || parts.size() == 1) return parts[0];
   const Value* frames = body->find("frames");
-  const bool frame = parts[1] == "root" || parts[1] == "tip" || (frames != nullptr && frames->has(parts[1]));
+  const bool frame = (frames != nullptr && frames->has(parts[1])) || !says_number(parts[1]);
   return frame ? parts[0] + '.' + parts[1] : parts[0];
 }
 

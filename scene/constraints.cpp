@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "withy/core/model/closing.hpp"
+#include "withy/core/model/compiled_model.hpp"
 #include "withy/core/simulation/assembly.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
@@ -128,7 +129,7 @@ Value close_loops(const Model& model, const Scene& scene, const Value* given, co
   }
   try {
     // The model outlives the equations.
-    const auto equations = scene.formulation->compile({std::shared_ptr<const Model>(), &model});
+    const auto equations = compile_model(*scene.formulation, {std::shared_ptr<const Model>(), &model});
     const Assembly assembly = assemble(model, *equations, given_state(given, model), state);
     if (!assembly.fault.empty())
       checker.key_error("/constraints/" + loops_of(model)[assembly.loop]->name(), assembly.fault);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cctype>
 
+#include "withy/core/model/bound_sensor.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/model.hpp"
-#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/model/signal_source.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
 #include "withy/scene/grammar.hpp"
@@ -59,8 +59,7 @@ std::shared_ptr<const std::vector<SensorNode>> measurable(const Value& outputs, 
       Made<Sensor> made;
       const auto value = check_plugin_map(given, "type", grammar::sensor_members(), checker, made);
       const auto object = value ? make_object(*made.plugin, *value, checker) : nullptr;
-      if (object != nullptr)
-        sensor = plugin_call("the sensor cannot be bound", [&] { return object->bind(model, bound); });
+      if (object != nullptr) sensor = bind_sensor(*object, model, bound);
     } catch (const std::invalid_argument&) {
       sensor = nullptr;
     }

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <list>
+#include <optional>
 #include <set>
 
+#include "withy/core/deformation/mass_points.hpp"
+#include "withy/core/model/bound_sensor.hpp"
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/model/plugin_call.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/floating_point.hpp"
+#include "withy/core/simulation/sensor_probe.hpp"
 #include "withy/scene/asked_outputs.hpp"
 #include "withy/scene/constraints.hpp"
 #include "withy/scene/control_order.hpp"
@@ -27,6 +31,16 @@
 
 namespace withy {
 namespace {
+
+/// \throws std::invalid_argument where a load acts at a frame that the model has not.
+void check_frames(const Model& model, const LoadNode& node) {
+  const std::string who = "load '" + node.name + "'";
+  plugin_call(who + " does not say where it acts", [&] {
+    for (const FrameIndex& at : node.load->frames())
+      if (!has_place(model, at))
+        throw std::invalid_argument(who + " acts at " + frame_in_words(model, at) + ", which the scene has not");
+  });
+}
 
 /// Checks one document and makes the scene of it.
 class SceneBuilder {
@@ -206,6 +220,7 @@ class SceneBuilder {
       refused_.erase(pending.name);
       try {
         model->add_load(pending.name, *pending.load);
+        check_frames(*model, model->loads().back());
       } catch (const std::invalid_argument&) {
         unbound_.add(pending.name, *scene_.source.at("loads").find(pending.name));
       }
@@ -260,12 +275,13 @@ class SceneBuilder {
       checker_.key_error("/outputs/" + name, fmt::format("got name {}, which is that of a {}; outputs need their own",
                                                          in_quotes(name), taken));
     }
+    std::optional<SensorProbe> probe;  // where there are any
     add_parts<Sensor>("outputs", grammar::sensor_members(), tree.model != nullptr,
                       [&](const std::string& name, const Value&, const std::shared_ptr<const Sensor>& sensor) {
-                        auto bound = plugin_call("the sensor cannot be bound",
-                                                 [&] { return sensor->bind(*tree.model, scene_.outputs); });
-                        if (bound == nullptr)
-                          throw std::invalid_argument("the sensor cannot be bound and does not say why");
+                        auto bound = bind_sensor(*sensor, *tree.model, scene_.outputs);
+                        if (!probe) probe.emplace(*tree.model);
+                        if (const std::string fault = probe->fault_of(*bound); !fault.empty())
+                          throw std::invalid_argument("the sensor cannot be read: " + fault);
                         scene_.outputs.push_back({name, std::move(bound)});
                       });
   }

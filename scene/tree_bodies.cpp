@@ -6,8 +6,10 @@
 #include <sstream>
 #include <utility>
 
+#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/measured_place.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/state.hpp"
@@ -89,20 +91,51 @@ void TreeBodies::add(const std::string& name, const Value& given) {
     problems_.good = false;
     return;
   }
-  if (!check_shape(*body, made.plugin->id, *value)) return;
-  if (const Value* visual = value->find("visual"))
-    problems_.good =
-        check_visual(*visual, *body, checker_.make_context().directory, checker_.diagnostics()) && problems_.good;
-  node.body = body;
-  if (node.body->segments().size() > 1) {
-    add_segments(made.plugin->id, *value);
-  } else {
-    add_ends(node, *value);
-    if (node.body != nullptr) add_frames(value->at("frames"), *node.body);
-  }
+  entries_.back().plugin = made.plugin->id;
+  if (!asked(entries_.back(), [&] { return add_made(node, body, *value); })) return;
   if (auto counts = mode_counts(*value, made.plugin->parameters); !counts.empty())
     tree_.modes.push_back({name, std::move(counts)});
   values_.emplace_back(name, std::move(made.value));
+}
+
+/// What `call` finds out of a body from its plugin; nothing, after reporting at the body, where the plugin throws.
+template <class Call>
+auto TreeBodies::asked(const Entry& entry, Call&& call) -> decltype(call()) {
+  try {
+    return plugin_call("body plugin '" + entry.plugin + "' does not say what the body is", call);
+  } catch (const std::invalid_argument& e) {
+    problems_.key_error(entry.place.path, e.what());
+    const std::size_t end = static_cast<std::size_t>(entry.first + entry.count);
+    for (std::size_t i = static_cast<std::size_t>(entry.first); i < std::min(end, nodes_.size()); ++i)
+      nodes_[i].body = nullptr;  // asked no more
+    return {};
+  }
+}
+
+/// Whether the shape is one. What else is wrong is reported, and the body's values are kept.
+bool TreeBodies::add_made(BodyNode& node, std::shared_ptr<const Body> body, const Value& value) {
+  const std::string& plugin = entries_.back().plugin;
+  if (!check_shape(*body, plugin, value) || !check_measured(*body, plugin, value)) return false;
+  if (const Value* visual = value.find("visual"))
+    problems_.good =
+        check_visual(*visual, *body, checker_.make_context().directory, checker_.diagnostics()) && problems_.good;
+  node.body = std::move(body);
+  if (node.body->segments().size() > 1) {
+    add_segments(plugin, value);
+  } else {
+    add_ends(node, value);
+    if (node.body != nullptr) add_frames(value.at("frames"), *node.body);
+  }
+  return true;
+}
+
+bool TreeBodies::check_measured(const Body& body, const std::string& plugin, const Value& value) {
+  const std::string station = body.measured_station();
+  if (station.empty() || body.station(station)) return true;
+  problems_.key_error(value.place().path,
+                      fmt::format("body plugin '{}' measures at a station that the body does not have, {}; need {}",
+                                  plugin, in_quotes(station), body.stations()));
+  return false;
 }
 
 bool TreeBodies::check_shape(const Body& body, const std::string& plugin, const Value& value) {
@@ -160,11 +193,14 @@ std::optional<Terms> TreeBodies::terms_of(const Value& given) {
   return {};
 }
 
-/// The ends of a body are frames whether a hinge uses them or not: results speak of them.
+/// The ends of a body, and where it is measured, are frames whether a hinge uses them or not: results speak of them.
 void TreeBodies::add_ends(BodyNode& node, const Value& value) {
   for (const char* station : {"root", "tip"}) {
     if (auto section = node.body->station(std::string(station))) node.frames.push_back({station, *section, {}});
   }
+  if (node.body->shape().modes() > 0)
+    if (auto place = measured_place(*node.body); place && node.frame(place->name) < 0)
+      node.frames.push_back({place->name, std::move(place->at), {}});
   if (!node.frames.empty() && node.frames[0].name == "root") return;
   problems_.key_error(value.at("frames").place().path, fmt::format("body '{}' has no station 'root'", node.name));
   node.body = nullptr;
@@ -253,11 +289,13 @@ TreeBodies::NodeFrame TreeBodies::frame(const Value& end, int body, const std::s
   if (body < 0) return {};
   const Entry& entry = entries_[static_cast<std::size_t>(body)];
   if (!is_made(entry)) return {};  // reported already
-  const NodeFrame found = find_frame(entry, name);
-  if (found.node >= 0) return found;
-  problems_.error(end, fmt::format("body '{}' has no frame {}{}; its frames name other places of it", entry.name,
-                                   in_quotes(name), checker_.suggest(name, places_of(entry))));
-  return {};
+  return asked(entry, [&]() -> NodeFrame {
+    const NodeFrame found = find_frame(entry, name);
+    if (found.node >= 0) return found;
+    problems_.error(end, fmt::format("body '{}' has no frame {}{}; its frames name other places of it", entry.name,
+                                     in_quotes(name), checker_.suggest(name, places_of(entry))));
+    return {};
+  });
 }
 
 void TreeBodies::add_named_stations(const Value& value) {
@@ -270,8 +308,12 @@ void TreeBodies::add_named_stations(const Value& value) {
   const auto it = index_.find(text.substr(0, dot));
   if (it == index_.end()) return;
   const Entry& entry = entries_[static_cast<std::size_t>(it->second)];
-  if (!is_made(entry) || find_frame(entry, text.substr(dot + 1)).node >= 0) return;
-  for (const std::string& place : places_of(entry)) tree_.names.places.add(entry.name + "." + place);
+  if (!is_made(entry)) return;
+  const auto places = asked(entry, [&]() -> std::vector<std::string> {
+    if (find_frame(entry, text.substr(dot + 1)).node >= 0) return {};
+    return places_of(entry);
+  });
+  for (const std::string& place : places) tree_.names.places.add(entry.name + "." + place);
 }
 
 void TreeBodies::name_frames() {

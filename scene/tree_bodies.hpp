@@ -36,6 +36,7 @@ class TreeBodies {
     int count = 1;
     int held = -1;  ///< the node that the inboard hinge holds
     Place place;
+    std::string plugin = {};  ///< that made it
   };
   /// A node and one of its frames.
   struct NodeFrame {
@@ -65,7 +66,11 @@ class TreeBodies {
   [[nodiscard]] std::vector<Value::Member>& values() { return values_; }
 
  private:
+  template <class Call>
+  auto asked(const Entry& entry, Call&& call) -> decltype(call());
+  bool add_made(BodyNode& node, std::shared_ptr<const Body> body, const Value& value);
   bool check_shape(const Body& body, const std::string& plugin, const Value& value);
+  bool check_measured(const Body& body, const std::string& plugin, const Value& value);
   void add_segments(const std::string& plugin, const Value& value);
   std::optional<Terms> terms_of(const Value& given);
   void add_ends(BodyNode& node, const Value& value);

@@ -135,4 +135,18 @@ FramePlace place_of(const Model& model, FrameIndex at) {
   return {frame.section, frame.pose};
 }
 
+bool has_place(const Model& model, FrameIndex at) {
+  if (at.body < 0 || static_cast<std::size_t>(at.body) >= model.bodies().size()) return false;
+  const auto count = [](std::size_t size) { return static_cast<std::ptrdiff_t>(size); };
+  if (at.frame >= 0) return at.frame < count(model.bodies()[static_cast<std::size_t>(at.body)].frames.size());
+  const FieldLoad* field = field_of(model);
+  return field != nullptr && -1 - at.frame < count(field->points_of(at.body).size());
+}
+
+std::string frame_in_words(const Model& model, FrameIndex at) {
+  const bool known = at.body >= 0 && static_cast<std::size_t>(at.body) < model.bodies().size();
+  return "frame " + std::to_string(at.frame) + " of body " +
+         (known ? "'" + model.bodies()[static_cast<std::size_t>(at.body)].name + "'" : std::to_string(at.body));
+}
+
 }  // namespace withy

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "withy/core/model/model.hpp"
@@ -100,5 +101,10 @@ struct FramePlace {
   Pose pose;
 };
 FramePlace place_of(const Model& model, FrameIndex at);
+
+/// Whether a model has a frame or, under a load on distributed mass, a mass point of this index.
+bool has_place(const Model& model, FrameIndex at);
+/// "frame 7 of body 'arm'": of an index that a model may not have.
+std::string frame_in_words(const Model& model, FrameIndex at);
 
 }  // namespace withy

@@ -1,6 +1,7 @@
 #include "withy/core/equations/sensing.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/equations/sensed_reactions.hpp"
@@ -27,6 +28,11 @@ std::size_t most_given(const Model& model) {
     if (node.load->output() != nullptr) most = std::max(most, node.load->output()->outputs());
   return most;
 }
+
+/// Sensors come from plugins: what they ask for and no model has is no number.
+Vector3 no_vector() { return Vector3::Constant(std::numeric_limits<double>::quiet_NaN()); }
+
+bool is_index(int index, std::size_t count) { return index >= 0 && static_cast<std::size_t>(index) < count; }
 
 const LoadNumbers* numbers_of(const LoadNode& node) { return dynamic_cast<const LoadNumbers*>(node.load.get()); }
 
@@ -76,7 +82,8 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
 
   FrameMotion motion(FrameIndex frame) noexcept override {
     FrameMotion motion;
-    if (frame.body < 0) return motion;
+    if (frame.body == -1) return motion;
+    if (!plan_->has(frame)) return {no_vector().replicate<1, 3>(), no_vector(), no_vector(), no_vector()};
     const sensed::StepOf<First> at = moving(frame);
     motion.R = at.X.R.unaryExpr(&value);
     motion.position = sensed::now(at.X.p);
@@ -85,7 +92,8 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
     return motion;
   }
   FrameAcceleration acceleration(FrameIndex frame) noexcept override {
-    if (frame.body < 0) return {};
+    if (frame.body == -1) return {};
+    if (!plan_->has(frame)) return {no_vector(), no_vector()};
     const sensed::StepOf<First> at = moving(frame);
     const Matrix3 R = at.X.R.unaryExpr(&value);
     const Vector3 w = sensed::now(at.V.w), v = sensed::now(at.V.v);
@@ -93,7 +101,10 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
   }
 
   std::span<const double> load_efforts(int load) noexcept override {
-    equations_.load_efforts(state_->time, state_->y, load, load_efforts_, work_);
+    if (load != EquationsOfMotion::all_loads && !is_index(load, plan_->model.loads().size()))
+      std::fill(load_efforts_.begin(), load_efforts_.end(), no_vector().x());
+    else
+      equations_.load_efforts(state_->time, state_->y, load, load_efforts_, work_);
     return load_efforts_;
   }
   std::span<const double> motion_efforts() noexcept override {
@@ -102,6 +113,7 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
     return motion_efforts_;
   }
   Wrench reaction(int hinge) noexcept override {
+    if (!is_index(hinge, plan_->bodies.size())) return {no_vector(), no_vector()};
     find_reactions();
     return reactions_.of_hinge(static_cast<std::size_t>(hinge));
   }
@@ -111,6 +123,7 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
     return loops_->reaction(loop, multipliers_, work_);
   }
   SectionLoad section(std::size_t index) noexcept override {
+    if (index >= plan_->cuts.size()) return {{no_vector(), no_vector()}, no_vector(), no_vector()};
     find_reactions();
     const sensed::CutPlan& cut = plan_->cuts[index];
     const sensed::BodyPlan& body = plan_->bodies[cut.body];
@@ -138,6 +151,10 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
     return own;
   }
   BodyEnergies energies(int index) noexcept override {
+    if (!is_index(index, plan_->bodies.size())) {
+      const double none = no_vector().x();
+      return {none, none, none, no_vector(), no_vector()};
+    }
     find_motion();
     const auto b = static_cast<std::size_t>(index);
     const sensed::BodyPlan& body = plan_->bodies[b];

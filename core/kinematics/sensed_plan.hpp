@@ -105,6 +105,13 @@ struct Plan {
   std::size_t rod_packs = 0;  ///< work memory of all rods
   std::size_t most_modes = 0;
 
+  /// Whether there is a frame or mass point of this index.
+  [[nodiscard]] bool has(FrameIndex at) const noexcept {
+    if (at.body < 0 || static_cast<std::size_t>(at.body) >= bodies.size()) return false;
+    const BodyPlan& body = bodies[static_cast<std::size_t>(at.body)];
+    return body.frame(at.frame) < (at.frame < 0 ? body.frames.size() : body.named);
+  }
+
  private:
   void add_body(std::size_t index, Terms terms);
   void add_cut(const SectionPlace& place);

@@ -41,6 +41,9 @@ void Signals::choose_readings(const Model& model, const Terms& terms) {
     std::vector<FrameIndex> asked;
     static_cast<void>(probe(model, {}, &asked));
     for (const FrameIndex& f : asked) {
+      if (!has_place(*model_, f))
+        throw std::invalid_argument("what is measured asks for " + frame_in_words(*model_, f) +
+                                    ", which the scene has not");
       const auto same = [&](const FrameIndex& g) { return g.body == f.body && g.frame == f.frame; };
       if (std::none_of(frames_.begin(), frames_.end(), same)) frames_.push_back(f);
     }

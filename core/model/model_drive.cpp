@@ -21,6 +21,23 @@ void check_times(const std::string& who, const Part& part) {
   if (!sound) throw std::invalid_argument(who + " jumps or ends at a time that is no number");
 }
 
+/// What a load says of its states and of the scratch space it needs.
+struct Kept {
+  std::size_t scratch = 0;
+  const ContinuousPart* continuous = nullptr;
+  std::vector<std::string> names;  ///< of the continuous states
+  std::size_t discrete = 0;        ///< count of states
+};
+
+Kept kept_by(const BoundLoad& load, const std::string& name) {
+  Kept kept{load.scratch(), load.continuous(), {}, 0};
+  if (kept.continuous != nullptr)
+    for (std::size_t i = 0, count = kept.continuous->states(); i < count; ++i)
+      kept.names.push_back(name + "." + kept.continuous->name(i));
+  if (const DiscretePart* part = load.discrete(); part != nullptr) kept.discrete = part->states();
+  return kept;
+}
+
 }  // namespace
 
 bool Model::driven(std::size_t hinge) const { return driven_[hinge]; }
@@ -113,24 +130,25 @@ void Model::add_load(std::string name, const Load& load) {
       plugin_call(who + " cannot be bound", [&]() -> std::shared_ptr<const BoundLoad> { return load.bind(*this); });
   if (bound == nullptr) throw std::invalid_argument(who + " cannot be bound and does not say why");
   check_times(who, *bound);
-  load_scratch_ = std::max(load_scratch_, bound->scratch());
-  const std::size_t index = loads_.size();
   LoadNode node{std::move(name), bound};
-  if (const ContinuousPart* part = bound->continuous(); part != nullptr) {
-    const std::size_t count = part->states();
-    node.continuous = part;
+  const Kept kept = plugin_call(who + " does not say what it keeps", [&] { return kept_by(*bound, node.name); });
+  load_scratch_ = std::max(load_scratch_, kept.scratch);
+  const std::size_t index = loads_.size();
+  if (kept.continuous != nullptr) {
+    const std::size_t count = kept.names.size();
+    node.continuous = kept.continuous;
     node.continuous_slot = {index, layout_.moving(), count};
     layout_.continuous_slots.push_back(node.continuous_slot);
-    for (std::size_t i = 0; i < count; ++i) layout_.continuous_names.push_back(node.name + "." + part->name(i));
+    layout_.continuous_names.insert(layout_.continuous_names.end(), kept.names.begin(), kept.names.end());
     layout_.continuous += count;
     // Discrete states stand behind the continuous ones.
     for (LoadSlot& slot : layout_.discrete_slots) loads_[slot.load].slot.first = slot.first += count;
   }
-  if (const DiscretePart* part = bound->discrete(); part != nullptr && part->states() > 0) {
+  if (kept.discrete > 0) {
     if (layout_.discrete_slots.empty()) layout_.discrete = 1;  // behind all, whether they are those of a run
-    node.slot = {index, layout_.moving() + layout_.discrete - 1, part->states()};
+    node.slot = {index, layout_.moving() + layout_.discrete - 1, kept.discrete};
     layout_.discrete_slots.push_back(node.slot);
-    layout_.discrete += part->states();
+    layout_.discrete += kept.discrete;
   }
   loads_.push_back(std::move(node));
 }

@@ -58,12 +58,35 @@ std::string field_fault(const std::string& name, const ConstMatrix& m, Eigen::In
   return finite_fault(name, m);
 }
 
+/// Whether the head of a table cannot hold a text: it is one line of columns as "name[unit]" with commas between them.
+bool breaks_heads(const std::string& text, const char* signs) {
+  return text.find_first_of(signs) != std::string::npos || std::any_of(text.begin(), text.end(), [](char c) {
+           return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+         });
+}
+
+/// Of a name, which is that of an object in HDF5 too.
+bool is_no_column(const std::string& name) { return breaks_heads(name, ",\"/"); }
+
+constexpr const char* column_rule = " has a name with a comma, a quotation mark, a slash or a control character";
+
+/// As tables spell a name: "mode[1]" is "mode.1".
+std::string spelled(const std::string& name) {
+  std::string text = name;
+  std::erase(text, ']');
+  std::replace(text.begin(), text.end(), '[', '.');
+  return text;
+}
+
 std::string names_fault(const std::vector<std::string>& names) {
   std::set<std::string> seen;
-  for (const std::string& name : names) {
-    if (name.empty()) return "a mode has no name";
-    if (!seen.insert(name).second) return "two modes are named '" + name + "'";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty()) return "a mode has no name";
+    if (is_no_column(names[i])) return "mode " + std::to_string(i + 1) + column_rule;
+    if (!seen.insert(spelled(names[i])).second) return "two modes are named '" + names[i] + "'";
   }
+  for (const std::string& name : seen)
+    if (seen.contains(name + ".rate")) return "a mode is named '" + name + ".rate', as the rate of another";
   return {};
 }
 
@@ -144,6 +167,21 @@ std::string find_fault(const ModalShape& shape) {
     if (const std::string fault = section_fault(shape.sections[i], n); !fault.empty()) {
       return "section " + std::to_string(i + 1) + ": " + fault;
     }
+  }
+  return {};
+}
+
+std::string find_fault(const std::vector<SensorColumn>& columns) {
+  if (columns.empty()) return "there is none";
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const SensorColumn& c = columns[i];
+    const std::string which = "number " + std::to_string(i + 1);
+    if (is_no_column(c.component)) return which + column_rule;
+    if (breaks_heads(c.unit, ",\"[]"))
+      return which + " has a unit with a comma, a quotation mark, a bracket or a control character";
+    if (!seen.insert(spelled(c.component)).second)
+      return c.component.empty() ? "two have no name" : "two are named '" + c.component + "'";
   }
   return {};
 }

@@ -49,6 +49,11 @@ std::unique_ptr<ShapeFunctions> make_shape_functions(const Value& family, const 
                          : beam.strain == BeamData::Strain::torsion ? "torsion"
                                                                     : "extension and shear";
     context.diagnostics.error(name.place(), id + " has no functions for " + strain);
+    return nullptr;
+  }
+  if (const std::string fault = find_fault(*functions, beam, modes); !fault.empty()) {
+    context.diagnostics.error(name.place(), id + " made functions that cannot be: " + fault);
+    return nullptr;
   }
   return functions;
 }

@@ -44,7 +44,8 @@ struct FrameAcceleration {
 
 /// A state as sensors see it. What is asked for is found then and kept until the next state, each in time proportional
 /// to the number of bodies at most; frames move by their bodies' strain kinematics without truncation. Allocates
-/// nothing once made; of one thread.
+/// nothing once made; of one thread. Indices that the model has not, of frames, loads, hinges, bodies or sections, give
+/// NaN; the sensors of a scene are refused where they ask for one at its start.
 class SensedState {
  public:
   virtual ~SensedState() = default;

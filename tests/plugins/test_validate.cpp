@@ -4,8 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <stdexcept>
 
+#include "withy/core/model/compiled_model.hpp"
 #include "withy/core/model/validate.hpp"
+#include "withy/core/plugin/mode_family.hpp"
 
 namespace {
 
@@ -122,6 +126,96 @@ TEST(Validate, names_modes_that_cannot_be_told_apart) {
   EXPECT_EQ(fault_after([](ModalShape& s) { s.mode_names[1] = s.mode_names[0]; }),
             "two modes are named 'bending_y[1]'");
   EXPECT_EQ(fault_after([](ModalShape& s) { s.mode_names[0].clear(); }), "a mode has no name");
+}
+
+TEST(Validate, names_modes_that_no_table_can_hold) {
+  const auto named = [](const std::string& first, const std::string& second) {
+    return fault_after([&](ModalShape& s) { s.mode_names = {first, second}; });
+  };
+  const std::string rule = " has a name with a comma, a quotation mark, a slash or a control character";
+  EXPECT_EQ(named("a,b", "c"), "mode 1" + rule);
+  EXPECT_EQ(named("a", "b\nc"), "mode 2" + rule);
+  EXPECT_EQ(named("a[1]", "a.1"), "two modes are named 'a.1'") << "tables spell them alike";
+  EXPECT_EQ(named("m", "m.rate"), "a mode is named 'm.rate', as the rate of another");
+  EXPECT_EQ(named("größe x", "1.bending"), "");
+}
+
+TEST(Validate, names_numbers_of_sensors_that_no_table_can_hold) {
+  using Columns = std::vector<withy::SensorColumn>;
+  const std::string name = " has a name with a comma, a quotation mark, a slash or a control character";
+  const std::string unit = " has a unit with a comma, a quotation mark, a bracket or a control character";
+  EXPECT_EQ(find_fault(Columns{}), "there is none");
+  EXPECT_EQ(find_fault(Columns{{"x", "m"}, {"x", "m"}}), "two are named 'x'");
+  EXPECT_EQ(find_fault(Columns{{"", "m"}, {"", "s"}}), "two have no name");
+  EXPECT_EQ(find_fault(Columns{{"x", "m"}, {"a,b", "m"}}), "number 2" + name);
+  EXPECT_EQ(find_fault(Columns{{"a\nb", "m"}}), "number 1" + name);
+  EXPECT_EQ(find_fault(Columns{{"x", "m,s"}}), "number 1" + unit);
+  EXPECT_EQ(find_fault(Columns{{"x", "m]"}}), "number 1" + unit);
+  EXPECT_EQ(find_fault(Columns{{"", "m"}, {"position.0", "kg m/s^2"}, {"größe", ""}}), "");
+}
+
+/// sin kx and its derivatives times factors, in the place of some where it fails.
+class Waves final : public withy::ShapeFunctions {
+ public:
+  std::size_t given = 3;
+  double slope = 1, curvature = 1, wave_number_ = 3, value = 1;
+  std::size_t count() const override { return given; }
+  double wave_number() const override { return wave_number_; }
+  void evaluate(double x, std::span<double> phi, std::span<double> first, std::span<double> second) const override {
+    for (std::size_t i = 0; i < given; ++i) {
+      const double k = static_cast<double>(i + 1);
+      phi[i] = value * std::sin(k * x);
+      first[i] = slope * k * std::cos(k * x);
+      second[i] = -curvature * k * k * std::sin(k * x);
+    }
+  }
+};
+
+TEST(Validate, names_functions_that_are_not_as_many_or_whose_derivatives_are_none) {
+  using Strain = withy::BeamData::Strain;
+  const auto fault = [](const std::function<void(Waves&)>& harm, Strain strain = Strain::bending) {
+    Waves waves;
+    harm(waves);
+    return find_fault(waves, {.strain = strain, .length = 2}, 3);
+  };
+  const auto begins = [](const std::string& text, const std::string& with) { return text.starts_with(with); };
+  EXPECT_EQ(fault([](Waves&) {}), "");
+  EXPECT_EQ(fault([](Waves& w) { w.given = 2; }), "there are 2, where 3 are asked for");
+  EXPECT_EQ(fault([](Waves& w) { w.wave_number_ = nan; }), "their greatest wave number is nan");
+  EXPECT_EQ(fault([](Waves& w) { w.value = nan; }), "function 1 has the value nan at x = 0.274348 m");
+  const std::string slope = fault([](Waves& w) { w.slope = 1.001; });
+  EXPECT_TRUE(begins(slope, "function 1 has the slope 0.963")) << slope;
+  EXPECT_NE(slope.find(" at x = 0.274348 m; differences of its values give 0.962"), std::string::npos) << slope;
+  const std::string curvature = fault([](Waves& w) { w.curvature = 2; });
+  EXPECT_TRUE(begins(curvature, "function 1 has the curvature -0.541")) << curvature;
+  EXPECT_EQ(fault([](Waves& w) { w.curvature = 2; }, Strain::torsion), "") << "twist has none";
+}
+
+/// Compiles nothing, or throws.
+class NoFormulation final : public withy::Formulation {
+ public:
+  explicit NoFormulation(bool throws) : throws_(throws) {}
+  withy::Terms terms() const override { return {}; }
+  std::unique_ptr<withy::EquationsOfMotion> compile(std::shared_ptr<const withy::Model>) const override {
+    if (throws_) throw std::runtime_error("out of order");
+    return nullptr;
+  }
+
+ private:
+  bool throws_;
+};
+
+TEST(Validate, a_formulation_that_gives_no_equations_is_refused_and_what_it_throws_is_told) {
+  const auto said = [](bool throws) -> std::string {
+    try {
+      withy::compile_model(NoFormulation(throws), nullptr);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(said(false), "it compiles no equations and does not say why");
+  EXPECT_EQ(said(true), "it cannot compile the model: out of order");
 }
 
 }  // namespace

@@ -4,12 +4,15 @@
 #include <cfenv>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "scene_fixture.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
+#include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/sensor.hpp"
 
 namespace withy::test {
 namespace {
@@ -108,6 +111,118 @@ class OnSine final : public Hinge {
   std::string fault_;
 };
 
+/// A body with one mistake in what it says of its stations.
+class Misplaced final : public Body {
+ public:
+  explicit Misplaced(std::string fault) : fault_(std::move(fault)) {
+    shape_.particles.push_back({1, PointExpansion::rigid(Vector3::Zero(), 0)});
+    shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(0, 0);
+  }
+  const ModalShape& shape() const override { return shape_; }
+  std::optional<PointExpansion> station(const StationName& name) const override {
+    if (fault_ == "throws" || (fault_ == "throws-late" && name == StationName("side")))
+      throw std::runtime_error("out of order");
+    if (name != StationName("root")) return {};
+    return PointExpansion::rigid(Vector3::Zero(), 0);
+  }
+  std::string stations() const override { return "root"; }
+  std::string measured_station() const override { return fault_ == "measured" ? "nose" : ""; }
+
+ private:
+  std::string fault_;
+  ModalShape shape_;
+};
+
+/// Acts at a frame that its scene may not have.
+class Elsewhere final : public Load {
+ public:
+  explicit Elsewhere(FrameIndex at) : at_(at) {}
+  std::unique_ptr<BoundLoad> bind(const Model&) const override { return std::make_unique<Bound>(at_); }
+
+ private:
+  class Bound final : public BoundLoad {
+   public:
+    explicit Bound(FrameIndex at) : at_(at) {}
+    std::size_t scratch() const override { return 0; }
+    void add(double, std::span<const double>, std::span<const double>, std::span<double>,
+             std::span<double>) const noexcept override {}
+    std::span<const FrameIndex> frames() const override { return {&at_, 1}; }
+    std::vector<double> discontinuities() const override { return {}; }
+    double end() const override { return 0; }
+    void begin(State&) const override {}
+
+   private:
+    FrameIndex at_;
+  };
+  FrameIndex at_;
+};
+
+/// A sensor with one mistake.
+class Mistaken final : public Sensor {
+ public:
+  explicit Mistaken(std::string fault) : fault_(std::move(fault)) {}
+  std::unique_ptr<BoundSensor> bind(const Model&, std::span<const SensorNode>) const override {
+    return std::make_unique<Bound>(fault_);
+  }
+
+ private:
+  class Bound final : public BoundSensor {
+   public:
+    explicit Bound(std::string fault) : fault_(std::move(fault)) {}
+    std::vector<SensorColumn> columns() const override {
+      if (fault_ == "throws") throw std::runtime_error("out of order");
+      if (fault_ == "comma") return {{"a,b", "m"}};
+      return {{"", "m"}};
+    }
+    std::vector<SectionPlace> sections() const override {
+      if (fault_ == "body") return {{9, 0.1}};
+      if (fault_ == "section") return {{0, 0.1}};
+      return {};
+    }
+    void read(SensedState& state, const SensorInputs& inputs, std::span<double> values) const noexcept override {
+      values[0] = 0;
+      if (fault_ == "frame") values[0] = state.motion({0, 77}).position.x();
+      if (fault_ == "no-body") values[0] = state.acceleration({9, 0}).linear.x();
+      if (fault_ == "hinge") values[0] = state.reaction(-1).force.x();
+      if (fault_ == "unasked") values[0] = state.section(inputs.first_section).inner.force.x();
+    }
+
+   private:
+    std::string fault_;
+  };
+  std::string fault_;
+};
+
+/// Bends as x², or says so wrongly.
+class Parabola final : public ModeFamily {
+ public:
+  explicit Parabola(std::string fault) : fault_(std::move(fault)) {}
+  std::size_t most() const override { return 1; }
+  std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t) const override {
+    return std::make_unique<Functions>(fault_, beam.length);
+  }
+
+ private:
+  class Functions final : public ShapeFunctions {
+   public:
+    Functions(std::string fault, double length) : fault_(std::move(fault)), length_(length) {}
+    std::size_t count() const override { return fault_ == "none" ? 0 : 1; }
+    double wave_number() const override { return 2 / length_; }
+    void evaluate(double x, std::span<double> phi, std::span<double> slope,
+                  std::span<double> curvature) const override {
+      const double size = std::sqrt(5.0) / length_ / length_;
+      phi[0] = size * x * x;
+      slope[0] = (fault_ == "slope" ? 4 : 2) * size * x;
+      curvature[0] = 2 * size;
+    }
+
+   private:
+    std::string fault_;
+    double length_;
+  };
+  std::string fault_;
+};
+
 class HostilePlugins : public SceneTest {
  protected:
   HostilePlugins() {
@@ -150,6 +265,27 @@ class HostilePlugins : public SceneTest {
       return std::make_unique<OnSine>(p.text_at("fault"));
     };
     e.add(std::move(sine));
+    const auto add_faulty = [&]<class Interface, class Faulty>(const char* id, std::type_identity<Interface>,
+                                                               std::type_identity<Faulty>) {
+      Plugin<Interface> plugin;
+      plugin.id = id;
+      plugin.parameters = {text("fault", "what is wrong with it").otherwise("nothing")};
+      plugin.make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Interface> {
+        return std::make_unique<Faulty>(p.text_at("fault"));
+      };
+      e.add(std::move(plugin));
+    };
+    add_faulty("misplaced", std::type_identity<Body>{}, std::type_identity<Misplaced>{});
+    add_faulty("mistaken", std::type_identity<Sensor>{}, std::type_identity<Mistaken>{});
+    add_faulty("parabola", std::type_identity<ModeFamily>{}, std::type_identity<Parabola>{});
+    Plugin<Load> elsewhere;
+    elsewhere.id = "elsewhere";
+    elsewhere.parameters = {number("body", "1", "index"), number("frame", "1", "index")};
+    elsewhere.make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Load> {
+      return std::make_unique<Elsewhere>(
+          FrameIndex{static_cast<int>(p.number_at("body")), static_cast<int>(p.number_at("frame"))});
+    };
+    e.add(std::move(elsewhere));
     add("refused", [](const Value&, const MakeContext&) -> Made { throw PluginError("a refused library"); });
     add("nan", [](const Value&, const MakeContext&) -> Made {
       return std::make_unique<Lump>(std::numeric_limits<double>::quiet_NaN(), true);
@@ -172,9 +308,10 @@ TEST_F(HostilePlugins, ThatThrowAreReported) {
 }
 
 TEST_F(HostilePlugins, ThatMakeNothingAreReported) {
-  EXPECT_EQ(problem("type: null"),
-            "s.yaml:4:7: /bodies/b/type: missing; need one of: beam, greedy, lump, modal, nan, null, number, "
-            "plate, refused, rigid, rootless, rounds, throws");
+  EXPECT_EQ(
+      problem("type: null"),
+      "s.yaml:4:7: /bodies/b/type: missing; need one of: beam, greedy, lump, misplaced, modal, nan, null, number, "
+      "plate, refused, rigid, rootless, rounds, throws");
   EXPECT_EQ(problem("type: 'null'"), "s.yaml:4:3: /bodies/b: body 'null' cannot be made and does not say why");
 }
 
@@ -209,6 +346,58 @@ TEST_F(HostilePlugins, WhoseLoadsThrowWhileTheyAreBoundAreReportedAtTheLoad) {
   EXPECT_EQ(load("throws-number"),
             "s.yaml:8:3: /loads/l: load 'l' cannot be bound: it throws what is no exception of C++");
   EXPECT_EQ(load("throws-at-times"), "s.yaml:8:3: /loads/l: load 'l' does not say when it jumps or ends: no times");
+}
+
+TEST_F(HostilePlugins, WhoseStationsThrowOrAreMissingAreReportedAtTheBody) {
+  const std::string who = "s.yaml:4:3: /bodies/b: body plugin 'misplaced' ";
+  EXPECT_EQ(problem("type: misplaced"), "");
+  EXPECT_EQ(problem("type: misplaced, fault: throws"), who + "does not say what the body is: out of order");
+  EXPECT_EQ(problem("type: misplaced, fault: measured"),
+            who + "measures at a station that the body does not have, \"nose\"; need root");
+  EXPECT_EQ(problems(replaced(with("type: misplaced, fault: throws-late"), "child: b", "child: b.side"), registry),
+            who + "does not say what the body is: out of order");
+}
+
+TEST_F(HostilePlugins, WhoseLoadsActWhereThereIsNoFrameAreReportedAtTheLoad) {
+  const auto load = [&](const std::string& at) {
+    return problems(with("type: lump") + "loads:\n  l: {type: elsewhere, " + at + "}\n", registry);
+  };
+  const std::string who = "s.yaml:8:3: /loads/l: load 'l' acts at ";
+  EXPECT_EQ(load("body: 0, frame: 0"), "");
+  EXPECT_EQ(load("body: 0, frame: 77"), who + "frame 77 of body 'b', which the scene has not");
+  EXPECT_EQ(load("body: 0, frame: -1"), who + "frame -1 of body 'b', which the scene has not");
+  EXPECT_EQ(load("body: 9, frame: 0"), who + "frame 0 of body 9, which the scene has not");
+  EXPECT_EQ(load("body: -1, frame: 0"), who + "frame 0 of body -1, which the scene has not");
+}
+
+TEST_F(HostilePlugins, WhoseSensorsGiveOrAskForWhatThereIsNotAreReportedAtTheOutput) {
+  const auto sensor = [&](const std::string& fault) {
+    return problems(with("type: lump") + "outputs:\n  o: {type: mistaken, fault: " + fault + "}\n", registry);
+  };
+  const std::string at = "s.yaml:8:3: /outputs/o: the sensor ";
+  EXPECT_EQ(sensor("nothing"), "");
+  EXPECT_EQ(sensor("throws"), at + "does not say what it gives: out of order");
+  EXPECT_THAT(sensor("comma"), testing::StartsWith(at + "gives numbers that cannot be: number 1 has a name with a"));
+  EXPECT_EQ(sensor("body"), at + "cannot be read: it asks for a section of body 9, and there are 1");
+  EXPECT_EQ(sensor("section"),
+            at + "cannot be read: it asks for the section at x = 0.1 m of body 'b', which cannot be cut there");
+  EXPECT_EQ(sensor("frame"), at + "cannot be read: it asks for frame 77 of body 'b', which the scene has not");
+  EXPECT_EQ(sensor("no-body"), at + "cannot be read: it asks for frame 0 of body 9, which the scene has not");
+  EXPECT_EQ(sensor("hinge"), at + "cannot be read: it asks for hinge -1, and there are 1");
+  EXPECT_EQ(sensor("unasked"), at + "cannot be read: it asks for section 0, and there are 0");
+}
+
+TEST_F(HostilePlugins, WhoseFunctionsAreNotAsTheySayAreReportedAtTheFamily) {
+  const auto family = [&](const std::string& fault) {
+    return problem(
+        "type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 10, modes: 1, family: {name: "
+        "parabola, fault: " +
+        fault + "}}");
+  };
+  const std::string made = "mode family 'parabola' made functions that cannot be: ";
+  EXPECT_EQ(family("nothing"), "");
+  EXPECT_THAT(family("none"), testing::EndsWith("/family/name: " + made + "there are 0, where 1 are asked for"));
+  EXPECT_THAT(family("slope"), testing::HasSubstr(made + "function 1 has the slope "));
 }
 
 TEST_F(HostilePlugins, WhoseLoadsBeginWhereThereIsNoNumberAreReportedAtTheLoad) {

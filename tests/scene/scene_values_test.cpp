@@ -245,9 +245,11 @@ TEST_F(SceneValuesTest, AnOutputIsWhatItsNameSays) {
       {"boom.tip.acceleration", "{type: frame, of: boom.tip, show: acceleration}"},
       {"boom.tip.velocity@hub.out", "{type: frame, of: boom.tip, in: hub.out, show: velocity}"},
       {"boom.tip.distance@hub", "{type: distance, to: boom.tip, from: hub}"},
+      {"hub.distance@boom.tip", "{type: distance, to: hub, from: boom.tip}"},
       {"boom.motion", "{type: frame, of: boom}"},
       {"hub.out.gyro", "{type: gyro, of: hub.out}"},
       {"boom.section@0.25", "{type: section, of: boom, at: 0.25}"},
+      {"boom.section@25e-2", "{type: section, of: boom, at: 0.25}"},
       {"boom.energy", "{type: energy, of: boom}"},
       {"motor.power", "{type: power, of: motor}"},
       {"momentum", "{type: momentum}"}};
@@ -288,8 +290,10 @@ TEST_F(SceneValuesTest, NamesOfOutputsThatSayNothingAreReported) {
               testing::AllOf(testing::HasSubstr("/outputs/boom.tipp.gyro/of: no frame \"boom.tipp\"; did you mean"),
                              testing::HasSubstr("there is no section at 2 m"),
                              testing::HasSubstr("/outputs/boom.section/at: missing")));
+  EXPECT_THAT(of("boom.tip.distance@hub.aut"), testing::HasSubstr("no frame \"hub.aut\"; did you mean"));
   EXPECT_THAT(of("{shoulder.effort: {type: effort, hinge: root}}"), testing::HasSubstr("got name \"shoulder.effort\""));
   EXPECT_THAT(of("hub.gyro@own"), testing::HasSubstr("names no output"));
+  EXPECT_THAT(of("boom.section@0.1m"), testing::HasSubstr("names no output"));
 }
 
 }  // namespace

@@ -1,0 +1,129 @@
+// Whether the functions that a mode family gives are what they are said to be.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "withy/core/plugin/mode_family.hpp"
+
+namespace withy {
+namespace {
+
+/// Parts of the length where no table has a row and no function of an even beam a node.
+constexpr std::array<double, 4> compared_places = {0.1371742, 0.4142136, 0.6830127, 0.9318517};
+/// Of 1/β: smooth functions agree with differences over one of them, also near a kink.
+constexpr std::array<double, 4> compared_steps = {1e-2, 1e-3, 1e-4, 1e-5};
+/// Of the greatest derivative: far above the error of the best of these differences, far below a factor forgotten.
+constexpr double derivative_tolerance = 1e-4;
+constexpr double derivative_rounding = 1e-8;  ///< of the greatest value times β
+
+/// φ, φ′ and φ″ of all functions at a place.
+using ShapeValues = std::array<std::vector<double>, 3>;
+
+ShapeValues values_at(const ShapeFunctions& functions, double x) {
+  ShapeValues v;
+  for (std::vector<double>& of : v) of.resize(functions.count());
+  functions.evaluate(x, v[0], v[1], v[2]);
+  return v;
+}
+
+double greatest_of(const std::vector<ShapeValues>& places, std::size_t derivative, std::size_t function) {
+  double greatest = 0;
+  for (const ShapeValues& v : places) greatest = std::max(greatest, std::abs(v[derivative][function]));
+  return greatest;
+}
+
+/// Whether the derivatives at one place agree with differences of what they are the derivatives of.
+class ComparedFunctions {
+ public:
+  ComparedFunctions(const ShapeFunctions& functions, const BeamData& beam)
+      : functions_(functions),
+        length_(beam.length),
+        unit_(std::max(functions.wave_number(), 1 / beam.length)),
+        // Curvatures are the strains of bending alone: nobody asks for those of twist and elongation.
+        derivatives_(beam.strain == BeamData::Strain::bending ? 2 : 1) {
+    for (const double part : compared_places) places_.push_back(values_at(functions, part * length_));
+  }
+
+  [[nodiscard]] std::string fault() const {
+    if (std::string text = finite_fault(); !text.empty()) return text;
+    for (std::size_t place = 0; place < places_.size(); ++place)
+      if (std::string text = fault_at(place); !text.empty()) return text;
+    return {};
+  }
+
+ private:
+  [[nodiscard]] std::string finite_fault() const {
+    for (std::size_t place = 0; place < places_.size(); ++place)
+      for (std::size_t d = 0; d <= derivatives_; ++d)
+        for (std::size_t i = 0; i < functions_.count(); ++i)
+          if (const double said = places_[place][d][i]; !std::isfinite(said)) return said_text(place, d, i).str();
+    return {};
+  }
+
+  [[nodiscard]] std::string fault_at(std::size_t place) const {
+    const double x = compared_places[place] * length_;
+    std::vector<std::array<double, 2>> found(functions_.count());
+    std::vector<std::array<bool, 2>> right(functions_.count(), {false, derivatives_ < 2});
+    for (const double step : compared_steps) {
+      const double h = std::min(step / unit_, 0.05 * length_);
+      const ShapeValues ahead = values_at(functions_, x + h), behind = values_at(functions_, x - h);
+      bool all = true;
+      for (std::size_t i = 0; i < functions_.count(); ++i) {
+        for (std::size_t d = 0; d < derivatives_; ++d) {
+          found[i][d] = (ahead[d][i] - behind[d][i]) / (2 * h);
+          right[i][d] = right[i][d] || agree(place, d, i, found[i][d]);
+          all = all && right[i][d];
+        }
+      }
+      if (all) return {};
+    }
+    for (std::size_t i = 0; i < functions_.count(); ++i)
+      for (std::size_t d = 0; d < derivatives_; ++d)
+        if (!right[i][d]) return difference_text(place, d, i, found[i][d]);
+    return {};
+  }
+
+  /// Of the derivative of the d-th derivative of a function.
+  [[nodiscard]] bool agree(std::size_t place, std::size_t d, std::size_t function, double found) const {
+    const double greatest = std::max(greatest_of(places_, d + 1, function), std::abs(found));
+    const double rounding = derivative_rounding * unit_ * greatest_of(places_, d, function);
+    return std::abs(places_[place][d + 1][function] - found) <= derivative_tolerance * greatest + rounding;
+  }
+
+  [[nodiscard]] std::ostringstream said_text(std::size_t place, std::size_t d, std::size_t function) const {
+    static constexpr std::array<const char*, 3> names = {"value", "slope", "curvature"};
+    std::ostringstream text;
+    text << "function " << function + 1 << " has the " << names.at(d) << " " << places_[place][d][function]
+         << " at x = " << compared_places.at(place) * length_ << " m";
+    return text;
+  }
+  [[nodiscard]] std::string difference_text(std::size_t place, std::size_t d, std::size_t function,
+                                            double found) const {
+    std::ostringstream text = said_text(place, d + 1, function);
+    text << "; differences of its " << (d == 0 ? "values" : "slopes") << " give " << found;
+    return text.str();
+  }
+
+  const ShapeFunctions& functions_;
+  double length_, unit_;
+  std::size_t derivatives_;  ///< how many of them are compared
+  std::vector<ShapeValues> places_;
+};
+
+}  // namespace
+
+std::string find_fault(const ShapeFunctions& functions, const BeamData& beam, std::size_t count) {
+  std::ostringstream text;
+  if (functions.count() != count) {
+    text << "there are " << functions.count() << ", where " << count << " are asked for";
+    return text.str();
+  }
+  if (const double beta = functions.wave_number(); !std::isfinite(beta) || beta < 0) {
+    text << "their greatest wave number is " << beta;
+    return text.str();
+  }
+  return ComparedFunctions(functions, beam).fault();
+}
+
+}  // namespace withy
