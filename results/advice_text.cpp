@@ -219,7 +219,9 @@ std::string advice_text(const AdviceReport& report) {
   add_reasons(lines, report);
   lines.add("left out", report.left_out);
   if (const std::string limits = limits_text(a.indicators); !limits.empty())
-    lines.add("limits", limits + (a.indicators.front().use() > 1 ? ", which the error above has in it" : ""));
+    lines.add("limits", limits + (a.indicators.front().use() > 1 && a.yardstick->reference.third_order == 0
+                                      ? ", which the error above has in it"
+                                      : ""));
   for (const study::Probe& p : a.above)
     lines.add("next up",
               fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));

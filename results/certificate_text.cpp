@@ -22,11 +22,14 @@ std::string percent(double ratio) { return fmt::format("{:.{}g} %", 100 * ratio,
 /// A group of the ledger (docs/terms.md) for a reader who has no page at hand.
 std::string_view in_words(std::string_view group) {
   using Words = std::pair<std::string_view, std::string_view>;
-  static constexpr std::array<Words, 7> all = {
-      Words{"M*1 a", "inertia of first order"},     {"M*2 a", "inertia of foreshortening"},
-      {"M*3 a", "inertia beyond first order"},      {"f1", "forces of speeds, as of rigid bodies"},
-      {"f2-1", "forces of speeds, first order"},    {"f2-2", "forces of speeds on foreshortening"},
-      {"f3", "forces of speeds beyond first order"}};
+  static constexpr std::array<Words, 13> all = {
+      Words{"M*1 a", "inertia of first order"},      {"M*2 a", "inertia of foreshortening"},
+      {"M*3 a", "inertia beyond first order"},       {"f1", "forces of speeds, as of rigid bodies"},
+      {"f2-1", "forces of speeds, first order"},     {"f2-2", "forces of speeds on foreshortening"},
+      {"f3", "forces of speeds beyond first order"}, {"weight*1", "weight of first order"},
+      {"weight*2", "weight on foreshortening"},      {"weight*3", "weight beyond first order"},
+      {"loads*1", "loads of first order"},           {"loads*2", "loads on foreshortening"},
+      {"loads*3", "loads beyond first order"}};
   const auto* found = std::find_if(all.begin(), all.end(), [&](const Words& w) { return w.first == group; });
   return found == all.end() ? group : found->second;
 }
@@ -39,7 +42,8 @@ std::string motion_in_words(std::size_t term) {
   if (term < 6) return fmt::format("turning about {} and {} at once", axes[axis], axes[(axis + 1) % 3]);
   if (term < 9) return fmt::format("angular acceleration about {}", axes[axis]);
   if (term < 12) return fmt::format("acceleration along {} and weight", axes[axis]);
-  return "the bodies that it carries";
+  if (term + 1 < motion_terms) return "the bodies that it carries";
+  return "loads at frames";
 }
 
 /// Errors of one kind, in the order of the model; of many the greatest.
@@ -229,6 +233,11 @@ std::string beside_limit(double value, double limit) {
   return fmt::format("{:.{}g}", value, most);
 }
 
+std::string cause_text(const study::StepLimit& s) {
+  if (s.cause() != "given") return "limited by " + s.cause();
+  return s.controlled ? fmt::format("as long as the scene allows, {:.3g} s", s.longest) : "as the scene gives them";
+}
+
 }  // namespace
 
 /// By how much longer steps have to become for a mode less to be proposed.
@@ -237,9 +246,9 @@ constexpr double worth_telling = 1.2;
 std::string step_limit_text(const study::StepLimit& s) {
   if (!s.limit) return fmt::format("mean step times fastest mode {:.2g}", s.product);
   if (std::isinf(*s.limit))
-    return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable at any step", s.cause(), s.product);
-  std::string text = fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}", s.cause(),
-                                 s.product, *s.limit);
+    return fmt::format("{}: mean step times fastest mode {:.2g}, stable at any step", cause_text(s), s.product);
+  std::string text =
+      fmt::format("{}: mean step times fastest mode {:.2g}, stable to {:.3g}", cause_text(s), s.product, *s.limit);
   if (s.fastest_rests()) text += ", for what is so fast rests or has just begun";
   if (!s.maker.empty() && s.cause() == "stability") text += "; the fastest pole is " + s.maker;
   if (s.fewer && s.fewer->fastest > 0 && s.fastest > worth_telling * s.fewer->fastest)

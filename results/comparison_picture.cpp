@@ -17,12 +17,21 @@
 namespace withy {
 namespace {
 
+/// When the first of the runs begins, and the last of them ends.
+std::pair<double, double> run_times(const std::vector<const study::ComparedRun*>& runs) {
+  std::pair<double, double> times = {runs.front()->outputs.front().time, runs.front()->outputs.back().time};
+  for (const study::ComparedRun* run : runs)
+    times = {std::min(times.first, run->outputs.front().time), std::max(times.second, run->outputs.back().time)};
+  return times;
+}
+
 /// A panel of one quantity, a curve a run. The range is that of the runs completed, or of all where none was.
 Panel panel_of(const std::string& label, const std::vector<const study::ComparedRun*>& runs,
                const std::function<double(const study::ComparedRun&, const State&)>& quantity) {
   const auto completed = [](const study::ComparedRun* r) { return r->summary.status == RunStatus::completed; };
   const bool any_completed = std::any_of(runs.begin(), runs.end(), completed);
   Panel panel{"time [s]", label, {std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()}, {}};
+  panel.x_range = run_times(runs);
   for (const study::ComparedRun* run : runs) {
     Curve curve;
     curve.ends_early = !completed(run);
@@ -97,6 +106,7 @@ Panel error_panel(const study::Comparison& comparison, const std::vector<const s
   };
   Panel panel{"time [s]", "error of " + tip.body + ".tip against " + reference.formulation() + " [m]", {1, 1}, {}, 260};
   panel.log_y = true;
+  panel.x_range = run_times(runs);
   double least = std::numeric_limits<double>::infinity(), greatest = 0;
   const auto of_reference = reference.prepared.equations->make_observation();
   for (std::size_t k = 0; k < runs.size(); ++k) {

@@ -84,15 +84,14 @@ void CsvRecorder::write(const std::string& text) {
   flushed_ = now;
 }
 
-void read_csv(const std::filesystem::path& path, Recorder& recorder) {
+void read_csv(const std::filesystem::path& path, Recorder& recorder, OpenLine last) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::system_error(errno, std::generic_category(), path.string());
   std::string line;
   std::size_t number = 0, columns = 0;
   std::vector<double> numbers;
   try {
-    // Where the end comes before that of the line, the line was not written whole.
-    while (std::getline(in, line) && !in.eof()) {
+    while (std::getline(in, line) && (last == OpenLine::taken || !in.eof())) {
       if (line.ends_with('\r')) line.pop_back();
       if (++number == 1) {
         const std::vector<Column> head = read_csv_head(behind_mark(line));

@@ -37,8 +37,10 @@ class CsvRecorder final : public Recorder {
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
 };
 
-/// Gives a recorder the table of such a file, whole lines alone: the last of a run that was killed may be cut. It is
-/// not ended. \throws ResultsError naming the line where it is no such file; std::system_error where it cannot be read
-void read_csv(const std::filesystem::path& path, Recorder& recorder);
+/// A last line that has no end: of a run that was killed it may be cut, other programs leave the end out.
+enum class OpenLine { left_out, taken };
+/// Gives a recorder the table of such a file, which is not ended. \throws ResultsError naming the line where it is no
+/// such file; std::system_error where it cannot be read
+void read_csv(const std::filesystem::path& path, Recorder& recorder, OpenLine last = OpenLine::left_out);
 
 }  // namespace withy

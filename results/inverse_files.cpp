@@ -76,6 +76,7 @@ std::string inverse_picture(const std::string& title, const study::InverseStudy&
     const auto [low, high] = std::minmax_element(curve.y.begin(), curve.y.end());
     const std::pair<double, double> range = curve.y.empty() ? std::pair(0.0, 1.0) : std::pair(*low, *high);
     panels.push_back({"time [s]", drive.name + " [" + drive.unit + "]", range, {std::move(curve)}});
+    if (!study.times().empty()) panels.back().x_range = {study.times().front(), study.times().back()};
   }
   return svg_plot(title, {"effort of the motion"}, panels);
 }

@@ -14,9 +14,11 @@ namespace fs = std::filesystem;
 /// More rows than a picture is wide are drawn by the least and the greatest of some together.
 constexpr std::size_t most_rows = 2000;
 
+constexpr const char* table_of_runs = "results.csv";
+
 /// The table of a run's folder.
 fs::path table_in(const std::string& folder) {
-  fs::path table = fs::path(folder) / "results.csv";
+  fs::path table = fs::path(folder) / table_of_runs;
   if (!fs::exists(table)) table.replace_extension(".h5");
   if (!fs::exists(table)) throw study::InputError(folder + " holds no results.csv: it is no folder of a run");
   return table;
@@ -42,7 +44,8 @@ PlottedRuns::PlottedRuns(const std::vector<std::string>& given) {
   if (files_.empty()) throw study::InputError("there is no folder '" + given.front() + "'");
   for (const fs::path& file : files_) {
     tables_.push_back(std::make_unique<DecimatedTable>(most_rows, 0));
-    file.extension() == ".h5" ? read_hdf5(file, *tables_.back()) : read_csv(file, *tables_.back());
+    const OpenLine last = file.filename() == table_of_runs ? OpenLine::left_out : OpenLine::taken;
+    file.extension() == ".h5" ? read_hdf5(file, *tables_.back()) : read_csv(file, *tables_.back(), last);
     legend_.push_back(name_of(file));
   }
 }

@@ -12,9 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Values as they are, not as they are written in files: whole doubles, any bytes.
-std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 Json files_json(const SceneSources& sources) {
   Json all = Json::array();
   for (const FileUsed& f : sources.files) all.push_back({{"path", f.path}, {"sha256", f.sha256}});
@@ -45,19 +42,19 @@ void list(std::string& text, const std::string& what) { text += (text.empty() ? 
 std::string Provenance::subject() const {
   Json j = Json::array({values});
   for (const FileUsed& f : sources.files) j.push_back(f.sha256);
-  return sha256(compact(j));
+  return sha256(json_line(j));
 }
 
 std::string Provenance::fingerprint() const {
   Json j = Json::array({subject(), program.version, program.description, program.build});
   for (std::size_t i = 0; i < plugin_builds.size(); ++i)
     j.push_back({sources.plugins[i].kind, sources.plugins[i].id, plugin_builds[i]});
-  return sha256(compact(j));
+  return sha256(json_line(j));
 }
 
 Provenance provenance_of(const Scene& scene, std::map<std::string, std::string> versions) {
   Provenance p{scene.file, scene.sha256, scene.settings, {}, scene.sources, {}, std::move(versions), build_identity()};
-  p.values = sha256(compact(value_json(scene.source)));
+  p.values = sha256(json_line(value_json(scene.source)));
   // Many plugins may be of one library.
   std::string file, build;
   for (const PluginUsed& used : p.sources.plugins) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -17,13 +18,13 @@ namespace {
 constexpr std::size_t enough_marks = 3;
 
 constexpr double plot_width = 860;
-constexpr double left = 88;
+constexpr double least_left = 88;  ///< of the axes: label and marks of y stand there
 constexpr double right = 24;
 constexpr double foot = 52;  ///< below each panel: marks and label of its axis
 
 /// From data to the picture, for one panel whose upper edge is at `top`. Ends are logarithms on an axis in decades.
 struct Scale {
-  double x0, x1, y0, y1, top, height;
+  double x0, x1, y0, y1, left, top, height;
   bool log_x, log_y;
   [[nodiscard]] double x(double v) const {
     return left + (place(v, log_x) - x0) / (x1 - x0) * (plot_width - left - right);
@@ -39,10 +40,24 @@ struct Scale {
   }
 };
 
-Scale scale_of(const Panel& panel, double top) {
+/// Whether numbers in this range are one but for rounding: no axis is to be read that closely.
+bool is_rounding(double low, double high) {
+  constexpr double rounding = 1e-13;
+  return !(high - low > rounding * std::max(std::abs(low), std::abs(high)));
+}
+
+Scale scale_of(const Panel& panel, double left, double top) {
   const auto y = [&](double v) { return Scale::place(v, panel.log_y); };
-  Scale s{0, 0, y(panel.y_range.first), y(panel.y_range.second), top, panel.height, panel.log_x, panel.log_y};
-  // An axis of values begins at 0, one in decades a little before the least.
+  Scale s{panel.x_range.first,
+          panel.x_range.second,
+          y(panel.y_range.first),
+          y(panel.y_range.second),
+          left,
+          top,
+          panel.height,
+          panel.log_x,
+          panel.log_y};
+  // An axis of values begins where it is to, one in decades a little before the least.
   if (panel.log_x || panel.equal || panel.free_x) s.x0 = std::numeric_limits<double>::infinity(), s.x1 = -s.x0;
   for (const Curve& c : panel.curves) {
     for (const double v : c.x) {
@@ -55,8 +70,9 @@ Scale scale_of(const Panel& panel, double top) {
     s.x0 -= margin;
     s.x1 += margin;
   }
-  if (!(s.x1 > s.x0)) s.x0 = 0, s.x1 = 1;
-  const double margin = s.y1 > s.y0 ? 0.06 * (s.y1 - s.y0) : std::max(1e-9, 0.06 * std::abs(s.y0));
+  if (!(s.x1 >= s.x0)) s.x0 = s.x1 = 0;
+  if (is_rounding(s.x0, s.x1)) s.x1 += std::max(1.0, 0.1 * std::abs(s.x0));
+  const double margin = !is_rounding(s.y0, s.y1) ? 0.06 * (s.y1 - s.y0) : std::max(1e-9, 0.06 * std::abs(s.y0));
   s.y0 -= margin;
   s.y1 += margin;
   if (panel.equal) {
@@ -72,19 +88,33 @@ Scale scale_of(const Panel& panel, double top) {
   return s;
 }
 
+/// Where the axes of all panels begin: behind the longest text at a mark of y.
+double left_of(const std::vector<Panel>& panels) {
+  constexpr double before = 34, character = 7.3;  // label and gaps; a digit is so wide at this size
+  double left = least_left;
+  for (const Panel& panel : panels)
+    for (const std::string& text : mark_texts(scale_of(panel, least_left, 0).y_marks()))
+      left = std::max(left, before + character * static_cast<double>(text.size()));
+  return left;
+}
+
 void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
-  const double bottom = s.top + s.height;
-  for (const double v : s.y_marks()) {
+  const double left = s.left, bottom = s.top + s.height;
+  const std::vector<double> x_marks = s.x_marks(), y_marks = s.y_marks();
+  const std::vector<std::string> x_texts = mark_texts(x_marks), y_texts = mark_texts(y_marks);
+  for (std::size_t i = 0; i < y_marks.size(); ++i) {
+    const double y = s.y(y_marks[i]);
     fmt::format_to(std::back_inserter(out),
                    "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n"
-                   "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.6g}</text>\n",
-                   left, plot_width - right, s.y(v), s.y(v), left - 7, s.y(v) + 4.5, v);
+                   "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
+                   left, plot_width - right, y, y, left - 7, y + 4.5, y_texts[i]);
   }
-  for (const double v : s.x_marks()) {
+  for (std::size_t i = 0; i < x_marks.size(); ++i) {
+    const double x = s.x(x_marks[i]);
     fmt::format_to(std::back_inserter(out),
                    "<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{}\" y2=\"{}\" stroke=\"#ddd\"/>\n"
-                   "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.6g}</text>\n",
-                   s.x(v), s.x(v), s.top, bottom, s.x(v), bottom + 18, v);
+                   "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                   x, x, s.top, bottom, x, bottom + 18, x_texts[i]);
   }
   fmt::format_to(std::back_inserter(out),
                  "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n"
@@ -119,7 +149,9 @@ void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen&
 }  // namespace
 
 std::vector<double> axis_marks(double low, double high) {
-  const double wanted = (high - low) / 5;
+  // Numbers of marks are counted in doubles: below that the next mark would be the same one.
+  const double least = 32 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
+  const double wanted = std::max((high - low) / 5, least);
   const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
   std::vector<double> marks;
   for (const double part : {0.5, 1.0, 2.0, 5.0, 10.0}) {
@@ -146,8 +178,28 @@ std::vector<double> decade_marks(double low, double high) {
   return marks.size() < enough_marks ? axis_marks(low, high) : marks;
 }
 
+std::vector<std::string> mark_texts(const std::vector<double>& marks, int digits) {
+  constexpr int most_digits = std::numeric_limits<double>::max_digits10;
+  constexpr double worth_seeing = 0.01;  // of the way to the nearest neighbour
+  const auto told = [&](std::size_t i, const std::string& text) {
+    const double off = std::abs(std::strtod(text.c_str(), nullptr) - marks[i]);
+    return (i == 0 || off <= worth_seeing * std::abs(marks[i] - marks[i - 1])) &&
+           (i + 1 == marks.size() || off <= worth_seeing * std::abs(marks[i + 1] - marks[i]));
+  };
+  std::vector<std::string> texts(marks.size());
+  for (bool all = false; !all && digits <= most_digits; ++digits) {
+    all = true;
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+      texts[i] = fmt::format("{:.{}g}", marks[i], digits);
+      all = all && told(i, texts[i]);
+    }
+  }
+  return texts;
+}
+
 std::string svg_plot(const std::string& title, const std::vector<std::string>& legend,
                      const std::vector<Panel>& panels) {
+  const double left = left_of(panels);
   const SvgLegend entries = svg_legend(legend, left, plot_width, 47);
   double top = entries.bottom + 25;
   double height = top + 8;
@@ -155,7 +207,7 @@ std::string svg_plot(const std::string& title, const std::vector<std::string>& l
   std::string out = svg_begin(plot_width, height, left, title);
   out += entries.text;
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const Scale s = scale_of(panels[i], top);
+    const Scale s = scale_of(panels[i], left, top);
     draw_axes(out, panels[i], s);
     fmt::format_to(std::back_inserter(out),
                    "<clipPath id=\"frame{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n"

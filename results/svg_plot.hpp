@@ -30,8 +30,11 @@ struct Panel {
   std::vector<Curve> curves;
   double height = 200;
   bool log_x = false, log_y = false;  ///< in decades; values, and the range, above 0
-  bool free_x = false;                ///< the axis of x begins at the least x, not at 0
+  bool free_x = false;                ///< the axis of x begins at the least x, whatever x_range says
   bool equal = false;                 ///< one unit is as long along both axes, and x may begin below 0
+  /// What an axis of x that is neither free nor in decades shows at least; of time from the start of the run to its
+  /// end, so that panels below each other have one axis, wherever their curves begin.
+  std::pair<double, double> x_range = {0, 0};
 };
 
 /// A title, a legend with one entry a curve, and the panels below each other.
@@ -52,5 +55,9 @@ std::vector<double> axis_marks(double low, double high);
 /// The same for an axis in decades: powers of ten in [low, high], and twice and five times them where these are few;
 /// where even those are less than three, as axis_marks() has them.
 std::vector<double> decade_marks(double low, double high);
+
+/// What stands at the marks of an axis, in their order: numbers of so many digits, or of more where these would not
+/// tell neighbours apart, as at 7000000.25 and 7000000.5.
+std::vector<std::string> mark_texts(const std::vector<double>& marks, int digits = 6);
 
 }  // namespace withy

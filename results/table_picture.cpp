@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "withy/results/csv.hpp"
 #include "withy/results/results_error.hpp"
@@ -34,10 +35,23 @@ Curve curve_of(const DecimatedTable& table, std::size_t column, double scale) {
   return curve;
 }
 
+/// When the first of the runs begins, and the last of them ends.
+std::pair<double, double> table_times(const std::vector<NamedTable>& runs) {
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const NamedTable& run : runs) {
+    const std::vector<double> times = run.table->column(0);
+    if (times.empty()) continue;
+    first = std::min(first, times.front());
+    last = std::max(last, times.back());
+  }
+  return first <= last ? std::pair(first, last) : std::pair(0.0, 0.0);
+}
+
 Panel panel_of_column(const std::vector<NamedTable>& runs, const Column& column) {
   const bool angle = column.unit == "rad";
   const std::string unit = angle ? "deg" : (column.unit.empty() ? "1" : column.unit);
   Panel panel{"t [s]", column_name(column.name) + " [" + unit + "]", {}, {}};
+  panel.x_range = table_times(runs);
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const NamedTable& run : runs) {
     const auto& columns = run.table->columns();
@@ -153,8 +167,10 @@ Panel envelope_panel(const std::vector<NamedTable>& runs, const std::vector<std:
 std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names) {
   const std::vector<Column> all = columns_of(runs);
   std::vector<Panel> panels;
+  std::set<std::string> shown;  // names may have columns in common, as "slide" and "slide.rate"
   for (const std::string& name : names)
-    for (const Column& column : asked_for(all, name)) panels.push_back(panel_of_column(runs, column));
+    for (const Column& column : asked_for(all, name))
+      if (shown.insert(column.name).second) panels.push_back(panel_of_column(runs, column));
   if (!names.empty()) {
     widen_rounding(panels);
     return panels;

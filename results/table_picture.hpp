@@ -18,8 +18,9 @@ struct NamedTable {
 
 /// A panel a column over time, a curve a run in each that has the column; angles in degrees.
 /// \param names of columns, or what stands before a dot in them: "link1.tip" is all of that tip; empty: the coordinates
-/// of hinges and the deflections of tips that change, or whatever changes where none of these does
-/// \throws ResultsError where no run has such a column: it names the nearest
+/// of hinges and the deflections of tips that change, or whatever changes where none of these does. A column that
+/// several of the names mean is drawn once, where the first of them has it. \throws ResultsError where no run has such
+/// a column: it names the nearest
 std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names);
 
 /// The least and the greatest that each of the columns has in a run, over the place [m] that it is given: an envelope,

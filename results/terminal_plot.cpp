@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace withy {
 namespace {
 
 constexpr int panel_columns = 66, panel_rows = 10;  ///< characters of a panel; each is two by four dots
+constexpr int end_digits = 4;                       ///< of the ends of its axes, where these tell them apart
+constexpr std::size_t least_room = 10;              ///< characters for them
 
 /// Dots of one panel. A character with dots of one curve is a Braille pattern; with several curves all are letters.
 class Canvas {
@@ -62,6 +65,7 @@ void draw(Canvas& canvas, const Curve& curve, char owner, double x0, double x1, 
 
 std::string panel_text(const Panel& panel) {
   double x0 = std::numeric_limits<double>::infinity(), x1 = -x0;
+  if (!panel.free_x) std::tie(x0, x1) = panel.x_range;
   for (const Curve& curve : panel.curves) {
     for (const double x : curve.x) {
       x0 = std::min(x0, x);
@@ -73,15 +77,15 @@ std::string panel_text(const Panel& panel) {
   Canvas canvas(several);
   for (std::size_t c = 0; c < panel.curves.size(); ++c)
     draw(canvas, panel.curves[c], static_cast<char>('a' + c % 26), x0, x1, y0, y1);
+  const std::vector<std::string> y_texts = mark_texts({y0, y1}, end_digits), x_texts = mark_texts({x0, x1}, end_digits);
+  const std::size_t room = std::max({least_room, y_texts[0].size(), y_texts[1].size()});
   std::string out = panel.y_label + '\n';
   for (int r = 0; r < panel_rows; ++r) {
-    const std::string mark =
-        r == 0 ? fmt::format("{:.4g}", y1) : (r == panel_rows - 1 ? fmt::format("{:.4g}", y0) : std::string());
-    out += fmt::format("{:>10} |{}\n", mark, canvas.line(r));
+    const std::string mark = r == 0 ? y_texts[1] : (r == panel_rows - 1 ? y_texts[0] : std::string());
+    out += fmt::format("{:>{}} |{}\n", mark, room, canvas.line(r));
   }
-  const std::string first = fmt::format("{:.4g}", x0), last = fmt::format("{:.4g} s", x1);
-  return out + fmt::format("{:>11}+{:-<{}}\n{:>12}{}{:>{}}\n", "", "", panel_columns, "", first, last,
-                           panel_columns - static_cast<int>(first.size()));
+  return out + fmt::format("{:>{}}+{:-<{}}\n{:>{}}{}{:>{}}\n", "", room + 1, "", panel_columns, "", room + 2,
+                           x_texts[0], x_texts[1] + " s", panel_columns - static_cast<int>(x_texts[0].size()));
 }
 
 }  // namespace

@@ -60,6 +60,7 @@ Picture terms_picture(const std::string& title, const study::TermSizes& ledger) 
     const double top = std::max(ledger.greatest_peak(g), 1e-300);
     Panel panel{"time [s]", ledger.groups[g].name + " [N/sqrt(kg)]", {1e-6 * top, top}, {}};
     panel.log_y = true;
+    if (!ledger.times.empty()) panel.x_range = {ledger.times.front(), ledger.times.back()};
     for (const std::size_t k : shown) {
       Curve curve;
       for (std::size_t i = 0; i < ledger.times.size(); ++i) {

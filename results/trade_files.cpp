@@ -251,9 +251,8 @@ std::string trade_fingerprint(const study::Prepared& prepared, const std::vector
   }
   for (const char* reference : {"exact", "quadratic"}) build_of.operator()<Formulation>(reference);
   build_of.operator()<Integrator>("dopri5");
-  return sha256(Json::array({provenance_of(prepared.scene).fingerprint(), modes, tolerance, builds,
-                             subjects_over(prepared.values, points, registry), outputs})
-                    .dump());
+  return sha256(json_line(Json::array({provenance_of(prepared.scene).fingerprint(), modes, tolerance, builds,
+                                       subjects_over(prepared.values, points, registry), outputs})));
 }
 
 }  // namespace withy

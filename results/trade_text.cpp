@@ -28,7 +28,8 @@ std::string points_text(const std::vector<study::TradeResult>& results, const st
   TextTable table(head);
   for (std::size_t i = 0; i < results.size(); ++i) {
     const study::TradeResult& r = results[i];
-    std::vector<std::string> row = {front[i] ? "*" : "", r.point.formulation, std::to_string(r.point.modes)};
+    std::vector<std::string> row = {front[i] ? "*" : "", r.point.formulation,
+                                    r.point.modes > 0 ? std::to_string(r.point.modes) : "-"};
     if (families) row.push_back(r.point.family.empty() ? "scene's" : r.point.family);
     if (overs) row.push_back(trade_over_text(r.point));
     row.push_back(r.point.integrator);

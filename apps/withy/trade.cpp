@@ -1,10 +1,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/trade_axes.hpp"
-#include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/trade_files.hpp"
@@ -12,11 +10,9 @@
 
 namespace withy::app {
 
-std::vector<study::Point> points_of(study::Axes axes, const std::vector<std::string>& over, Registry& registry) {
+std::vector<study::Point> points_of(study::Axes axes, const std::vector<std::string>& over, const Engine& engine) {
   for (const std::string& text : over) axes.over.push_back(study::parse_variation(text));
-  if (axes.formulations.empty()) axes.formulations = studied_formulations(registry);
-  study::check_axes(axes);
-  return study::points_of(axes);
+  return study::points_of(study::trade_axes(std::move(axes), engine.scene(), engine.registry()));
 }
 
 namespace {
@@ -28,7 +24,7 @@ ExitStatus trade(const TradeArguments& arguments) {
         "--measure frequencies, --lock and --spin go with --limit; frequencies over a range are what "
         "withy modes --sweep shows");
   const Engine engine(arguments);
-  const std::vector<study::Point> points = points_of(arguments.axes, arguments.over, engine.registry());
+  const std::vector<study::Point> points = points_of(arguments.axes, arguments.over, engine);
   std::optional<TradeFolder> store;
   const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()), trade_content());
   if (taken)

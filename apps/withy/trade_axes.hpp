@@ -3,13 +3,14 @@
 #pragma once
 
 #include "withy/apps/withy/command.hpp"
+#include "withy/apps/withy/engine.hpp"
+#include "withy/study/candidates.hpp"
 #include "withy/study/variation_text.hpp"
 
 namespace withy::app {
 
 struct TradeArguments : SceneArguments, OutputArguments {
-  study::Axes axes = {{},           {""}, {1, 2, 3}, {"dopri5", "imex"},
-                      {1e-4, 1e-6}, {}};  ///< formulations empty: those of studies
+  study::Axes axes;               ///< what is empty is as study::trade_axes has it
   std::vector<std::string> over;  ///< `path=value,value,…`; where a limit is sought, one of them `path=from:to[:count]`
   std::string limit;              ///< relative error whose passing is sought along a range in `over`; empty: a trade
   std::string measure = "runs";         ///< what that error is of: runs, frequencies
@@ -19,7 +20,7 @@ struct TradeArguments : SceneArguments, OutputArguments {
 };
 
 /// The points of the axes at each of the values gone over. \throws InputError
-std::vector<study::Point> points_of(study::Axes axes, const std::vector<std::string>& over, Registry& registry);
+std::vector<study::Point> points_of(study::Axes axes, const std::vector<std::string>& over, const Engine& engine);
 
 /// Where along a range of a scene's value each model ceases to hold an accuracy.
 /// \throws InputError, SceneError, PluginError

@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "withy/apps/withy/configuration.hpp"
-#include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/trade_axes.hpp"
 #include "withy/results/json_text.hpp"
@@ -50,7 +49,7 @@ Question read_question(const TradeArguments& arguments) {
 }
 
 std::optional<study::Thresholds> found(const Engine& engine, const TradeArguments& arguments, const Question& q) {
-  const std::vector<study::Point> points = points_of(q.axes, q.over, engine.registry());
+  const std::vector<study::Point> points = points_of(q.axes, q.over, engine);
   const study::Control control = study_control("trade");
   if (arguments.measure == "frequencies") {
     const study::Holding holding = study::read_holding(engine.model(), arguments.lock, arguments.spin);
@@ -74,8 +73,7 @@ ExitStatus trade_threshold(const TradeArguments& arguments) {
       take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()), threshold_content());
   const auto thresholds = found(engine, arguments, q);
   if (!thresholds) return ExitStatus::interrupted;
-  const ThresholdLabels labels{arguments.axes.families.size() > 1 || !arguments.axes.families.front().empty(),
-                               arguments.over.size() > 1, frequencies};
+  const ThresholdLabels labels{!arguments.axes.families.empty(), arguments.over.size() > 1, frequencies};
   const nlohmann::ordered_json j = thresholds_json(arguments.scene, arguments.measure, q.limit, q.range, *thresholds);
   const std::string title = threshold_title(arguments.scene, frequencies, q.limit);
   if (!arguments.out.empty()) write_thresholds(arguments.out, j, title, *thresholds, q.range, q.limit, labels);

@@ -231,6 +231,12 @@ TEST(Csv, IsReadBackAsItWasWrittenButForALastLineThatWasCut) {
   read_csv(folder / "excel.csv", kept);
   EXPECT_EQ(kept.columns()[0].name, "t");
   EXPECT_EQ(kept.column("x"), (std::vector<double>{1, 2}));
+  folder.write("open.csv", "t[s],x[m]\n0,1\n0.1,2");  // cut, or of a program that leaves the last end out
+  for (const auto& [last, rows] : {std::pair(OpenLine::left_out, 1U), std::pair(OpenLine::taken, 2U)}) {
+    MemoryRecorder open;
+    read_csv(folder / "open.csv", open, last);
+    EXPECT_EQ(open.column("x").size(), rows);
+  }
   for (const auto& [text, why] : {std::pair("t[s],x\n", ":1: expected name[unit], got 'x'"),
                                   std::pair("t[s],x[m]\n0,1\n0,1,2\n", ":3: expected 2 numbers"),
                                   std::pair("t[s],x[m]\n0,one\n", ":2: expected numbers")}) {
@@ -255,6 +261,8 @@ TEST(TablePicture, DrawsWhatIsAskedForAndNamesWhatIsNear) {
   };
   EXPECT_THAT(labels({}), testing::ElementsAre("shoulder [deg]", "link.tip.deflection_y [m]"));
   EXPECT_THAT(labels({"link.tip"}), testing::ElementsAre("link.tip.x [m]", "link.tip.deflection_y [m]"));
+  EXPECT_THAT(labels({"link.tip.x", "link.tip", "link.tip.x"}),
+              testing::ElementsAre("link.tip.x [m]", "link.tip.deflection_y [m]"));
   EXPECT_NEAR(table_panels({{"run", &table}}, {"shoulder"})[0].y_range.second, 0.49 * 180 / 3.14159265358979, 1e-9);
   try {
     labels({"sholder"});
@@ -272,6 +280,18 @@ TEST(TablePicture, DrawsWhatIsAskedForAndNamesWhatIsNear) {
   EXPECT_THAT(text, HasSubstr("shoulder [deg]"));
   EXPECT_THAT(text, HasSubstr("28.07 |")) << "the greatest value";
   EXPECT_THAT(text, HasSubstr("4.9 s"));
+}
+
+TEST(TablePicture, TimeIsThatOfTheRunAlsoWhereAColumnHasGaps) {
+  DecimatedTable table(100, 0);
+  table.begin({{"t", "s"}, {"x", "m"}, {"gap", "N"}});
+  for (int i = 0; i < 50; ++i) table.row(std::vector<double>{1000.0 + i, 7e6 + 0.01 * i, i < 9 ? std::nan("") : i});
+  const std::vector<Panel> panels = table_panels({{"run", &table}}, {"x", "gap"});
+  ASSERT_EQ(panels.size(), 2U);
+  for (const Panel& panel : panels) EXPECT_EQ(panel.x_range, std::pair(1000.0, 1049.0));
+  const std::string text = terminal_plot({"run"}, panels);
+  EXPECT_THAT(text, HasSubstr("7000000.49 |")) << text;
+  EXPECT_THAT(text, HasSubstr("1049 s")) << text;
 }
 
 TEST(Report, HoldsEveryRunWholeWhateverItsTexts) {

@@ -1,7 +1,7 @@
 // Plots over time: a panel for each group of columns, made when it comes into sight.
 import uPlot from 'uplot';
-import { dashes, palette, resampled } from './data.js';
-import { label_of } from './ticks.js';
+import { dashes, drawn, palette, pen_sample, resampled } from './data.js';
+import { is_rounding, label_of } from './ticks.js';
 
 const most_shown = 8; // curves of a panel at first
 
@@ -67,7 +67,7 @@ class Panel {
           values = resampled(t, y, of.t).map((v, i) => v == null ? null : v - of.y[i]);
           label += ' − reference';
         }
-        out.push({ pen, label, t: times, y: this.log ? Array.from(values, v => v == null || v === 0 ? null : Math.abs(v)) : values });
+        out.push({ pen, label, t: times, y: drawn(values, this.log) });
       }
     });
     return out;
@@ -93,10 +93,17 @@ class Panel {
       height: 230,
       cursor: { sync: { key: 'withy' }, drag: { x: true, y: false } },
       scales: { x: { time: false }, y: this.log ? { distr: 3 } : { range: (_, low, high) => range(low, high, limit) } },
-      legend: { live: true },
+      legend: {
+        live: true,
+        markers: { width: 0, fill: (_, k) => k > 0 ? pen_sample(colours[curves[k - 1].pen.color % colours.length], dashes[curves[k - 1].pen.dash % dashes.length]) : 'none' },
+      },
       axes: [
         { ...axis, label: 't [s]', labelSize: 18, labelFont: '12px system-ui, sans-serif', size: 32 },
-        { ...axis, size: 66, values: (u, ticks) => ticks.map(v => v == null ? '' : label_of(v, ticks, this.log)) },
+        {
+          ...axis,
+          size: (_, labels) => Math.max(66, 18 + 7.7 * Math.max(0, ...(labels ?? []).map(l => l.length))),
+          values: (u, ticks) => ticks.map(v => v == null ? '' : label_of(v, ticks, this.log)),
+        },
       ],
       series: [
         { label: 't [s]', value: (_, v) => number(v) },
@@ -105,8 +112,7 @@ class Panel {
           stroke: colours[c.pen.color % colours.length],
           dash: dashes[c.pen.dash % dashes.length],
           width: 1.75,
-          points: { show: false },
-          spanGaps: true,
+          points: { show: false, filter: (u, k) => lone(u.data[k]) }, // runs of other times leave no gaps
           value: (_, v) => number(v),
         })),
       ],
@@ -175,12 +181,20 @@ class Panel {
   }
 }
 
-// Ends of an axis: a limit is in sight where values come near it; what never changes stands in the middle.
+// Places of numbers between gaps, which make no line and are drawn as dots; null where there is none.
+function lone(values) {
+  const known = [];
+  for (let i = 0; i < values.length; ++i) if (values[i] !== undefined) known.push(i);
+  const at = known.filter((i, k) => values[i] !== null && values[known[k - 1]] == null && values[known[k + 1]] == null);
+  return at.length ? at : null;
+}
+
+// Ends of an axis: a limit is in sight where values come near it; what changes by rounding alone stands in the middle.
 function range(low, high, limit) {
   if (low == null) return [0, 1];
   if (limit && high > 0.05 * limit) high = Math.max(high, limit);
   if (limit) low = Math.min(low, 0);
-  const room = high > low ? 0.06 * (high - low) : Math.max(1e-12, 0.1 * Math.abs(low));
+  const room = !is_rounding(low, high) ? 0.06 * (high - low) : Math.max(1e-12, 0.1 * Math.abs(low));
   return [low - room, high + room];
 }
 

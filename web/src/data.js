@@ -75,10 +75,14 @@ function nameRuns(runs) {
 
 const degrees = 180 / Math.PI;
 
-// Of whole turns an angle may be off by between two moments, none is left.
+// Of whole turns an angle may be off by between two moments, none is left; where there is no angle nothing is told.
 function unwrapped(angles) {
   const out = angles.slice();
-  for (let i = 1; i < out.length; ++i) out[i] -= 360 * Math.round((out[i] - out[i - 1]) / 360);
+  let before = NaN;
+  for (let i = 0; i < out.length; ++i) {
+    if (Number.isFinite(before)) out[i] -= 360 * Math.round((out[i] - before) / 360);
+    if (Number.isFinite(out[i])) before = out[i];
+  }
   return out;
 }
 
@@ -113,8 +117,10 @@ export function quantities(run, turns = turning([run])) {
   const add = (group, name, unit, t, y, more = {}) => out.push(lazy({ group, name, unit, t, ...more }, 'y', y));
   // Angles that say again what a quaternion beside them says.
   const told = new Set(run.table.columns.filter(c => c.name.endsWith('.qw')).flatMap(c => ['rx', 'ry', 'rz'].map(r => c.name.replace(/qw$/, r))));
-  for (const column of run.table.columns.slice(1)) {
-    const { name, unit } = column, data = () => column.data;
+  // Coordinates and rates of hinges and modes stand before the energies, outputs of the scene behind them.
+  const states = run.table.columns.findIndex(c => c.name === 'kinetic_energy');
+  for (const [place, column] of [...run.table.columns.entries()].slice(1)) {
+    const { name, unit } = column, data = () => column.data, state = states < 0 || place < states;
     const last = name.slice(name.lastIndexOf('.') + 1);
     const quaternion = /^(.*)\.q([wxyz])$/.exec(name);
     if (quaternion) {
@@ -124,20 +130,20 @@ export function quantities(run, turns = turning([run])) {
       if (!parts) continue;
       const angles = lazy({}, 'all', () => attitude(...parts.values()));
       for (const i of [0, 1, 2]) add(`Attitude of ${base}: turns about x, y, z in this order`, `${base}.${'xyz'[i]}`, 'deg', parts.t, () => angles.all[i]);
-    } else if (name.endsWith('_energy') || name === 'work') add('Energies', name, unit, run.time, data);
+    } else if ((name.endsWith('_energy') || name === 'work') && unit === 'J') add('Energies', name, unit, run.time, data);
     else if (/^(linear|angular)_momentum\./.test(name)) add(name.startsWith('linear') ? 'Linear momentum' : 'Angular momentum', name, unit, run.time, data);
     else if (/\.tip\.deflection_[xyz]$/.test(name)) add('Deflection of tips', name, unit, run.time, data);
     else if (/\.tip\.[xyz]$/.test(name)) add('Position of tips', name, unit, run.time, data);
     else if (/\.motion_effort(\.\d+)?$/.test(name)) add(`Effort of motions, ${unit}`, name, unit, run.time, data);
-    else if (/\.rate(\.\d+)?$/.test(name)) add(unit === 'rad/s' ? 'Rates of hinges' : unit === 'm/s' ? 'Speeds of hinges' : 'Rates of modal coordinates', name, unit && unit !== '1' ? unit : '1/s', run.time, data);
+    else if (state && /\.rate(\.\d+)?$/.test(name)) add(unit === 'rad/s' ? 'Rates of hinges' : unit === 'm/s' ? 'Speeds of hinges' : 'Rates of modal coordinates', name, unit && unit !== '1' ? unit : '1/s', run.time, data);
     else if (unit === 'rad' && told.has(name)) continue;
     else if (unit === 'rad' && turns.has(name)) add('Turns', name, 'turns', run.time, () => column.data.map(v => v / 2 / Math.PI));
     else if (unit === 'rad') add('Angles', name, 'deg', run.time, () => column.data.map(v => v * degrees));
-    else if (unit === '') add('Modal coordinates', name, '1', run.time, data);
+    else if (state && unit === '') add('Modal coordinates', name, '1', run.time, data);
     // Of outputs: a strain, a formula.
-    else if (unit === '1') add('Numbers without a unit', name, '1', run.time, data);
+    else if (unit === '1' || unit === '') add('Numbers without a unit', name, '1', run.time, data);
     else if (name.includes('.')) add(`${name.slice(0, -last.length - 1)}, ${unit}`, name, unit, run.time, data);
-    else add(unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, run.time, data);
+    else add(state && unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, run.time, data);
   }
   const energy = together(run, ['kinetic_energy', 'potential_energy', 'work']);
   if (energy) {
@@ -193,8 +199,17 @@ export function resampled(t, y, at) {
   return out;
 }
 
+// Numbers as a plot takes them, or the logarithms' magnitudes: null where there is none, which leaves a gap.
+export const drawn = (values, log) => Array.from(values, v => !Number.isFinite(v) || (log && v === 0) ? null : log ? Math.abs(v) : v);
+
 // Okabe and Ito's colours, told apart by those who do not see colours too; by theme.
 export const palette = dark => dark
   ? ['#56b4e9', '#e69f00', '#2fc79a', '#e58fc0', '#f0e442', '#ff7f3f', '#b8c4d6', '#7fa8ff']
   : ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#b8860b', '#56b4e9', '#444444', '#7f3c8d'];
 export const dashes = [[], [8, 4], [2, 3], [10, 4, 2, 4], [4, 4], [14, 5]];
+// A line of a pen, as the background of a flat element.
+export function pen_sample(colour, dash) {
+  let at = 0;
+  const stops = dash.map((length, i) => `${i % 2 ? 'transparent' : colour} ${at}px ${at += length}px`);
+  return stops.length ? `repeating-linear-gradient(90deg, ${stops.join(', ')})` : colour;
+}

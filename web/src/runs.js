@@ -1,6 +1,6 @@
 // The page: time, view, plots and words of the runs that it holds.
 import { Charts } from './charts.js';
-import { grouped, palette, prepared } from './data.js';
+import { dashes, grouped, palette, pen_sample, prepared } from './data.js';
 import { View } from './view.js';
 import { element, write_sources, write_words } from './words.js';
 
@@ -31,7 +31,7 @@ export function show_runs(page) {
     charts.redraw();
     view?.build(dark);
     const colours = palette(dark);
-    document.querySelectorAll('#runs .swatch').forEach((s, i) => { s.style.background = colours[i % colours.length]; });
+    document.querySelectorAll('#runs .swatch').forEach((s, i) => { s.style.background = pen_sample(colours[i % colours.length], dashes[i % dashes.length]); });
   }
 
   // Digits of the clock by the length of the run.

@@ -14,12 +14,13 @@ function with_code(holder, text) {
   return holder;
 }
 
-// "modelled    what it is": the program's two columns, where a line without the first belongs to the one before.
-function certificate_rows(text) {
+// "modelled    what it is": the program's two columns, where a line without the first belongs to the one before. A name
+// of a body may be longer than its column, and has no blanks.
+export function certificate_rows(text) {
   const rows = [];
   for (const line of text.split('\n')) {
     if (!line.trim() || line === 'certificate') continue;
-    const name = line.slice(0, 24).trim(), rest = line.slice(24).trim();
+    const end = line.indexOf(' ', 23), name = line.slice(0, end).trim(), rest = line.slice(end).trim();
     if (name) rows.push([name, [rest]]); else rows[rows.length - 1]?.[1].push(rest);
   }
   return rows;

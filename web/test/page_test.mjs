@@ -4,11 +4,12 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Vector3 } from 'three';
-import { grouped, unpack } from '../src/data.js';
+import { drawn, grouped, quantities, unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
 import { greatest_of, longest_in_words } from '../src/arrows.js';
 import { Pace } from '../src/pace.js';
 import { label_of } from '../src/ticks.js';
+import { certificate_rows } from '../src/words.js';
 import { in_browser, opened, text } from './browser.mjs';
 import { check_gltf } from './gltf.mjs';
 import { check_landmarks } from './landmarks.mjs';
@@ -42,6 +43,8 @@ function check_ticks() {
   assert.equal(labels(1e6, 1.25e6, 1.5e6), '1.00e+6 1.25e+6 1.50e+6');
   assert.equal(labels(0, 0.25, 0.5), '0 0.25 0.50');
   assert.equal(labels(6000, 6020), '6000 6020');
+  assert.equal(labels(7000000, 7000000.25, 7000000.5), '7000000.00 7000000.25 7000000.50');
+  assert.equal(labels(1e-4, 1e-4 + 2e-12), '1.00000000e-4 1.00000002e-4');
 }
 
 // Runs lie over each other in the same unit, also where an angle turns far in one of them alone.
@@ -60,6 +63,35 @@ function check_groups() {
     ['Modal coordinates', 'boom.bending_y.1'],
     ['Rates of modal coordinates', 'boom.bending_y.1.rate'],
   ]);
+}
+
+// An output is no coordinate of a hinge, whatever its unit, and no energy in another unit.
+function check_outputs() {
+  const columns = [['t', 's'], ['slide', 'm'], ['slide.rate', 'm/s'], ['kinetic_energy', 'J'], ['gap', 'm'], ['gap.rate', 'm/s'], ['lost_energy', 'W']].map(([name, unit]) => ({ name, unit, data: [0, 1] }));
+  const groups = grouped([{ table: { columns }, validity: [], time: [0, 1], animation: { times: [0, 1] } }]);
+  assert.deepEqual(groups.map(g => [g.title, ...g.series.map(s => s.name)]), [
+    ['Travel of hinges', 'slide'],
+    ['Energies', 'kinetic_energy'],
+    ['gap, m', 'gap'],
+    ['gap, m/s', 'gap.rate'],
+    ['lost_energy, W', 'lost_energy'],
+    ['Speeds of hinges', 'slide.rate'],
+  ]);
+}
+
+// A moment without a number leaves a gap, and the rest as it is.
+function check_gaps() {
+  assert.deepEqual(drawn(Float64Array.of(1, NaN, Infinity, 0, -2), false), [1, null, null, 0, -2]);
+  assert.deepEqual(drawn([1, NaN, null, 0, -2], true), [1, null, null, null, 2]);
+  const half = Math.SQRT1_2, columns = [['t', 's', [0, 1, 2]], ['eye.qw', '1', [1, NaN, half]], ['eye.qx', '1', [0, NaN, half]], ['eye.qy', '1', [0, NaN, 0]], ['eye.qz', '1', [0, NaN, 0]]];
+  const [about_x] = quantities({ table: { columns: columns.map(([name, unit, data]) => ({ name, unit, data })) }, validity: [], time: [0, 1, 2] });
+  assert.deepEqual(drawn(about_x.y, false).map(v => v == null ? v : Math.round(v)), [0, null, 90]);
+}
+
+// Names of bodies stand whole, however long.
+function check_certificate() {
+  const name = 'the_left_outer_solar_panel_of_the_satellite';
+  assert.deepEqual(certificate_rows(`\ncertificate\n${'left out'.padEnd(23)} 42 % of it\n${''.padEnd(23)} and more\n${name} turns at 2\n`), [['left out', ['42 % of it', 'and more']], [name, ['turns at 2']]]);
 }
 
 // Runs on one page are compared: their arrows have one scale, which the page says.
@@ -261,6 +293,8 @@ async function check_several(browser, troubles) {
   await page.check('#differences');
   assert.match(await text(page, 'figure'), /ruthless\) − reference/);
   assert.doesNotMatch(await text(page, 'figure'), /quadratic\) − reference/);
+  const pens = await page.$$eval('#runs .swatch, figure:first-of-type .u-series:last-child .u-marker', all => all.map(e => /gradient/.test(e.style.background)));
+  assert.deepEqual(pens, [false, true, true], 'the dashes of a run are told beside its name and in legends');
   await page.uncheck('#runs label:nth-child(2) input');
   assert.notEqual(await picture(page), both, 'a run that is taken away is not drawn');
   await page.close();
@@ -300,6 +334,9 @@ function check_looks(file) {
 
 check_ticks();
 check_groups();
+check_outputs();
+check_gaps();
+check_certificate();
 check_turns();
 check_common_scale();
 await in_browser(withy, chromium, async (browser, own_folder, own_run) => {

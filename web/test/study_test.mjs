@@ -155,7 +155,7 @@ function write_plan(folder, name, text) {
 // Quantiles, histograms and cases are those of table.csv; failures are named.
 async function check_sweep(browser, folder, run, troubles) {
   const out = join(folder, 'sweep');
-  const plan = write_plan(folder, 'plan.yaml', 'vary:\n  loads.slew.time_scale: {grid: [0.5, 0.8, 1.0]}\n  bodies.link1.mass_per_length: {normal: {mean: 1.33937, deviation: 0.05}}\n  bodies.link2.bending_y.stiffness: {uniform: {from: 8, to: 20}}\ncases: 60\n');
+  const plan = write_plan(folder, 'the plan.yaml', 'vary:\n  loads.slew.time_scale: {grid: [0.5, 0.8, 1.0]}\n  bodies.link1.mass_per_length: {normal: {mean: 1.33937, deviation: 0.05}}\n  bodies.link2.bending_y.stiffness: {uniform: {from: 8, to: 20}}\ncases: 60\n');
   run('sweep', 'run', plan, '--out', out);
   const data = page_data(join(out, 'report.html'));
   const [head, ...rows] = readFileSync(join(out, 'table.csv'), 'utf8').trim().split('\n').map(l => l.split(','));
@@ -197,7 +197,7 @@ async function check_sweep(browser, folder, run, troubles) {
   await page.mouse.move(place.x, place.y);
   await says(page, '#note', /case \d+/);
   await page.mouse.click(place.x, place.y);
-  await says(page, '#case', /withy sweep case .*plan.yaml \d+/);
+  await says(page, '#case', /withy sweep case '.*the plan.yaml' \d+/);
   await shot(page, 'sweep-light');
   await page.click('#theme');
   await shot(page, 'sweep-dark');

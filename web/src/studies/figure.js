@@ -1,4 +1,6 @@
 // Figures of studies: SVG with axes, marks that answer the pointer, and a note beside it.
+import { is_rounding, label_of } from '../ticks.js';
+
 const svg_names = 'http://www.w3.org/2000/svg';
 export function draw(name, attributes = {}, text) {
   const e = document.createElementNS(svg_names, name);
@@ -20,7 +22,7 @@ export function scale_of(values, { log = false, from, to, include = [], room = 0
     high = Math.max(high, tell(v));
   }
   if (low > high) [low, high] = log ? [-1, 1] : [0, 1];
-  if (low === high) [low, high] = low === 0 || log ? [low - 1, high + 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
+  if (is_rounding(low, high)) [low, high] = low === 0 || log ? [low - 1, high + 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
   const more = room * (high - low);
   low -= include.length && Math.min(...include.map(tell)) <= low ? 0 : more;
   high += more;
@@ -32,13 +34,9 @@ export function scale_of(values, { log = false, from, to, include = [], room = 0
 }
 function ticks(low, high, most) {
   const least = (high - low) / Math.max(2, most), decade = 10 ** Math.floor(Math.log10(least));
-  const step = [1, 2, 5, 10].map(k => k * decade).find(s => s >= least * 0.999), digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  const out = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
-    const v = k * step;
-    out.push([v, Math.abs(high) >= 1e5 || step < 1e-4 ? (v === 0 ? '0' : v.toExponential(1).replace('.0e', 'e').replace('e+', 'e')) : v.toFixed(digits)]);
-  }
-  return out;
+  const step = [1, 2, 5, 10].map(k => k * decade).find(s => s >= least * 0.999), out = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) out.push(k * step);
+  return out.map(v => [v, label_of(v, out, false).replace('e+', 'e')]);
 }
 function log_ticks(low, high) {
   const out = [], thin = Math.max(1, Math.round((high - low) / 8));
@@ -53,7 +51,9 @@ function log_ticks(low, high) {
 // Axes with their labels; what is drawn goes to `marks`, cut off at the frame.
 export class Figure {
   constructor({ title, width = 760, height = 440, right = 16, x, y }) {
-    const left = 74, top = 14, bottom = 50;
+    const top = 14, bottom = 50;
+    this.y = scale_of(y.values, { ...y, from: height - bottom, to: top });
+    const left = Math.max(74, 30 + 7.7 * Math.max(0, ...this.y.ticks.map(([, name]) => name.length)));
     Object.assign(this, { width, height, left, top, bottom, right });
     this.element = document.createElement('figure');
     this.element.className = 'study-figure';
@@ -65,7 +65,6 @@ export class Figure {
     this.svg = draw('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': title ?? y.label });
     this.element.append(this.svg);
     this.x = scale_of(x.values, { ...x, from: left, to: width - right });
-    this.y = scale_of(y.values, { ...y, from: height - bottom, to: top });
     this.grid(x.label, y.label);
     this.marks = draw('g');
     this.svg.append(this.marks);

@@ -251,7 +251,7 @@ export class Sweep {
       line.append(element('th', c.name, { scope: 'row' }), element('td', row.values[i] == null ? '–' : typeof row.values[i] === 'number' ? number(row.values[i]) : `${row.values[i]}`));
       table.append(line);
     });
-    this.card.replaceChildren(element('h2', `Case ${row.case}`), element('div', row.status, { class: `state ${row.status}` }), table, element('p', 'To run it alone:', { class: 'soft' }), element('pre', `withy sweep case ${this.data.plan} ${row.case}`));
+    this.card.replaceChildren(element('h2', `Case ${row.case}`), element('div', row.status, { class: `state ${row.status}` }), table, element('p', 'To run it alone:', { class: 'soft' }), element('pre', `${this.data.command} ${row.case}`));
   }
 
   rows({ head, rows }) {
