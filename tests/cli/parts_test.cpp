@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <sstream>
 
@@ -105,6 +106,34 @@ TEST(SvgPlot, DecadesAreEquallyLong) {
   EXPECT_GT(x[1] - x[0], 100);
   EXPECT_NEAR(x[1] - x[0], x[2] - x[1], 0.02);
   EXPECT_NEAR(y[1] - y[0], y[2] - y[1], 0.02);
+}
+
+TEST(SvgPlot, TextsOfMarksTellThemApart) {
+  using testing::ElementsAre;
+  EXPECT_THAT(mark_texts({0, 0.5, 1}), ElementsAre("0", "0.5", "1"));
+  EXPECT_THAT(mark_texts({1e6, 1.1e6, 1.2e6}), ElementsAre("1e+06", "1.1e+06", "1.2e+06"));
+  EXPECT_THAT(mark_texts({7e6, 7e6 + 0.25, 7e6 + 0.5}), ElementsAre("7000000", "7000000.25", "7000000.5"));
+  EXPECT_THAT(mark_texts(decade_marks(1e-9, 1e9)), testing::Contains("1e-09"));
+  EXPECT_THAT(mark_texts({0, 28.07123}, 4), ElementsAre("0", "28.07"));
+  const Panel panel{"x", "y", {7e6, 7e6 + 1}, {Curve{{0, 1}, {7e6, 7e6 + 1}}}};
+  EXPECT_THAT(svg_plot("t", {"c"}, {panel}), testing::HasSubstr(">7000000.5<"));
+}
+
+/// As that of a momentum that is conserved: to draw it once took for ever.
+TEST(SvgPlot, ARangeOfRoundingHasAnAxis) {
+  const double after = std::nextafter(1.0, 2.0);
+  EXPECT_LE(axis_marks(1, after).size(), 8U);
+  const Panel panel{"x", "y", {1, after}, {Curve{{0, 1}, {1, after}}}};
+  EXPECT_THAT(svg_plot("t", {"c"}, {panel}), testing::HasSubstr(">1.05<"));
+}
+
+/// Panels below each other have one axis of time, wherever their curves begin.
+TEST(SvgPlot, AnAxisOfXBeginsWhereItsRangeDoes) {
+  Panel panel{"x", "y", {0, 1}, {Curve{{1001, 1010}, {0, 1}}}};
+  panel.x_range = {1000, 1010};
+  const std::string svg = svg_plot("t", {"c"}, {panel});
+  EXPECT_THAT(svg, testing::HasSubstr(">1000<"));
+  EXPECT_THAT(svg, testing::Not(testing::HasSubstr(">500<")));
 }
 
 TEST(SvgPlot, TextIsEscaped) {
