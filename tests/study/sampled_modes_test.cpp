@@ -11,6 +11,7 @@
 #include "withy/study/effective_mass.hpp"
 #include "withy/study/equilibrium.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/linear_model.hpp"
 #include "withy/study/modes.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/variation_text.hpp"
@@ -278,6 +279,22 @@ TEST(SampledEquilibrium, IsWhereARunStays) {
   EXPECT_EQ(last.time, 1);
   const Layout& layout = prepared.model().layout();
   for (std::size_t i = 0; i < layout.positions; ++i) EXPECT_NEAR(last.y[i], found.steady.state.y[i], 1e-12) << i;
+}
+
+/// Linear models call an equilibrium what the search for one does: where a run has come to rest, what a sample still
+/// changes is rounding, however small that is which the controller holds.
+TEST(SampledEquilibrium, IsOneForLinearModelsToo) {
+  Prepared prepared = scene_of(R"(bodies: {bus: {type: rigid, mass: 10, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: bus}}
+loads: {servo: {type: pid, hinge: axle, proportional: 4, derivative: 3, reference: 0.5, sample: 0.1}}
+)",
+                               {"time={end: 30, output: 30}"});
+  EXPECT_FALSE(linear_model(at_start(prepared), {{"axle"}, {}}).equilibrium);
+  State last;
+  simulate(prepared, plugins(), [&](const State& s) { last = s; }, {});
+  const Equilibrium found = find_equilibrium({prepared, last, {}}, {}, plugins());
+  ASSERT_EQ(found.problem, "");
+  EXPECT_TRUE(linear_model({prepared, found.steady.state, {}}, {{"axle"}, {}}).equilibrium);
 }
 
 TEST(SampledEquilibrium, SaysWhatGoesOnChanging) {
