@@ -20,6 +20,7 @@
 #include "withy/study/output_reader.hpp"
 #include "withy/study/remedy.hpp"
 #include "withy/study/rung_plan.hpp"
+#include "withy/study/sampled_growth.hpp"
 #include "withy/study/step_limit.hpp"
 
 namespace withy::study {
@@ -212,6 +213,12 @@ bool wanted(Estimate estimate, const Beyond& beyond) {
   return estimate == Estimate::always || (estimate == Estimate::automatic && !beyond.highest);
 }
 
+/// What grows in a run that ended badly, why, and what to do.
+std::string why_it_grew(const Prepared& prepared, const RunSummary& summary) {
+  const std::string sampled = sampled_growth_text(prepared, summary);
+  return growth_text(prepared, summary) + (sampled.empty() ? remedy_text(prepared, summary) : sampled);
+}
+
 }  // namespace
 
 void check_start(const Prepared& prepared) {
@@ -249,7 +256,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
     add_unseen(prepared, result.summary);
     // What is inaccurate here is the choice, and nothing grows.
     if (result.summary.status != RunStatus::inaccurate)
-      result.summary.message += growth_text(prepared, result.summary) + remedy_text(prepared, result.summary);
+      result.summary.message += why_it_grew(prepared, result.summary);
     std::optional<ErrorEstimate> estimate = plan.estimate;
     if (estimate) estimate->end = result.summary.final.time;
     result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
@@ -261,7 +268,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   if (const Value* closing = prepared.scene.source.find("closing"))
     result.summary.message += (result.summary.message.empty() ? "" : " ") + closing->text();
   add_unseen(prepared, result.summary);
-  result.summary.message += growth_text(prepared, result.summary) + remedy_text(prepared, result.summary);
+  result.summary.message += why_it_grew(prepared, result.summary);
   EstimateOutcome estimate;
   const bool comparable = !has_switches(prepared.model()) && result.summary.status != RunStatus::interrupted &&
                           result.summary.final.time > prepared.scene.initial.time;

@@ -5,17 +5,18 @@
 
 #include <cmath>
 #include <numbers>
-#include <regex>
 
 #include "withy/study/fast_course.hpp"
 #include "withy/study/plausibility.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/step_limit.hpp"
+#include "withy/tests/study/message.hpp"
 #include "withy/tests/study/plugins.hpp"
 
 namespace withy::study {
 namespace {
 
+using test::number_after;
 using test::plugins;
 using testing::HasSubstr;
 using testing::Not;
@@ -30,12 +31,6 @@ RunSummary run_of_text(const std::string& rest) {
   return run_of(SceneValues::parse(
       "format: withy/1\nformulation: quadratic\nintegrator: {name: dopri5, rtol: 1e-7, atol: 1e-9}\n" + rest,
       "planted.yaml"));
-}
-
-/// The number that follows some words of a message; NaN where they are not there.
-double number_after(const std::string& message, const std::string& words) {
-  std::smatch found;
-  return std::regex_search(message, found, std::regex(words + "([0-9.e+-]+[0-9])")) ? std::stod(found[1]) : NAN;
 }
 
 const char* const buckling_words = "its buckling load";
