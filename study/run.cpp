@@ -86,7 +86,8 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
   std::vector<std::string> watched = watched_outputs(scene);
   watched.insert(watched.end(), settings.watched.begin(), settings.watched.end());
   if (!watched.empty() && settings.statistics != nullptr)
-    watch.emplace(scene.outputs, watched, equations, discontinuities(*scene.model));
+    watch.emplace(scene.outputs, watched, equations, discontinuities(*scene.model),
+                  StepParts(*scene.model, scene.initial.time, options.end));
   RunSummary summary = withy::simulate(
       *scene.model, equations, *scene.integrator, scene.initial, options,
       [&](const State& state) {

@@ -4,8 +4,10 @@
 #include <stdexcept>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/digital_part.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
+#include "withy/core/plugin/kinks.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
 
@@ -201,7 +203,11 @@ class SwitchedInput final : public InputPort {
   const InputPort& port_;
 };
 
-class BoundSwitchedLoad final : public BoundLoad, public LoadNumbers, public LoadOfForms {
+class BoundSwitchedLoad final : public BoundLoad,
+                                public LoadNumbers,
+                                public LoadOfForms,
+                                public Kinks,
+                                public CourseOfTime {
  public:
   explicit BoundSwitchedLoad(Forms forms)
       : forms_(std::move(forms)), discrete_(forms_), continuous_(forms_, discrete_) {
@@ -253,7 +259,39 @@ class BoundSwitchedLoad final : public BoundLoad, public LoadNumbers, public Loa
   const BoundLoad* acting(std::span<const double> discrete) const noexcept override {
     return discrete_.acting(discrete);
   }
-  double end() const override { return forms_.front()->end(); }
+  /// Of all forms: an event may set what goes on for longer.
+  double end() const override {
+    double last = 0;
+    for (const auto& form : forms_) last = std::max(last, form->end());
+    return last;
+  }
+  std::size_t kinks() const override {
+    std::size_t count = 0;
+    for (const Kinks* form : parts<Kinks>()) count += form->kinks();
+    return count;
+  }
+  void kinks(std::span<const double> positions, std::span<const double> speeds,
+             std::span<double> values) const noexcept override {
+    for (const auto& form : forms_) {
+      const auto* part = dynamic_cast<const Kinks*>(form.get());
+      if (part == nullptr) continue;
+      part->kinks(positions, speeds, values.first(part->kinks()));
+      values = values.subspan(part->kinks());
+    }
+  }
+  std::size_t courses() const override {
+    std::size_t count = 0;
+    for (const CourseOfTime* form : parts<CourseOfTime>()) count += form->courses();
+    return count;
+  }
+  void course(double t, std::span<double> values) const noexcept override {
+    for (const auto& form : forms_) {
+      const auto* part = dynamic_cast<const CourseOfTime*>(form.get());
+      if (part == nullptr) continue;
+      part->course(t, values.first(part->courses()));
+      values = values.subspan(part->courses());
+    }
+  }
   void begin(State& state) const override { forms_.front()->begin(state); }
   std::unique_ptr<BoundLoad> rebound(const Model& model, const Terms& terms) const override {
     Forms forms = forms_;
@@ -268,6 +306,14 @@ class BoundSwitchedLoad final : public BoundLoad, public LoadNumbers, public Loa
   }
 
  private:
+  template <class Part>
+  [[nodiscard]] std::vector<const Part*> parts() const {
+    std::vector<const Part*> all;
+    for (const auto& form : forms_)
+      if (const auto* part = dynamic_cast<const Part*>(form.get())) all.push_back(part);
+    return all;
+  }
+
   Forms forms_;
   SwitchedDiscrete discrete_;
   SwitchedContinuous continuous_;

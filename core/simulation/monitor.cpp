@@ -244,7 +244,8 @@ void Monitor::audit_energy(const State& state) {
   summary_.untruncated_drift = relative(untruncated_error_);
   for (std::size_t i = 0; i < model_.layout().speeds; ++i)
     greatest_speed_ = std::max(greatest_speed_, std::abs(state.y[model_.layout().positions + i]));
-  if (!sign_change_ && error <= trust_limit_ * energy_scale_) trust_state(state);
+  // The greatest error so far: one that has grown with the energy passes through zero now and then.
+  if (!sign_change_ && energy_error_ <= trust_limit_ * energy_scale_) trust_state(state);
 }
 
 int Monitor::mass_matrix_sign(const State& state) {

@@ -53,6 +53,8 @@ class Monitor {
   void finish_momenta();
   /// What of the greatest energy may be missing from a state that is to be trusted.
   void trust(double limit) { trust_limit_ = limit; }
+  /// Trusts no state from here on.
+  void distrust() { trust_limit_ = -1; }
   /// The last state audited that can be trusted.
   [[nodiscard]] const State& trusted() const { return trusted_; }
   /// Takes the peaks of deflections and efforts back to what they were at the last trusted state.

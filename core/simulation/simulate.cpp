@@ -110,6 +110,8 @@ class Run final : public SteppingObserver {
   }
   bool after_step(const Stepper& stepper, bool /*outputs*/) override {
     const State& state = stepper.state();
+    const std::string fault = loops_.fault(stepper);
+    if (!fault.empty()) monitor_.distrust();
     monitor_.audit_steps(state, stepper.statistics());
     monitor_.observe(stepper);
     motion_gap_.look(state);
@@ -120,7 +122,7 @@ class Run final : public SteppingObserver {
     if (validity_)
       validity_->observe(state, loop_.step_evaluations(), monitor_.trusted().time, seen ? &monitor_.seen() : nullptr);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
-    if (const std::string fault = loops_.fault(state); !fault.empty()) {
+    if (!fault.empty()) {
       stop_ = {RunStatus::singular, fault, false};
     } else if (monitor_.sign_change()) {
       stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
@@ -303,6 +305,7 @@ std::string message_of_completed(const Run& run, const Model& model, const RunSu
   if (const std::string missed = note_on_missed_events(model, summary.final); !missed.empty()) add(missed);
   if (!summary.suspected_jumps.empty()) add(note_on_jumps(model, summary.suspected_jumps));
   for (const std::string& remark : run.stepper().remarks()) add("The integrator: " + remark + ".");
+  if (const std::string given = note_on_given_steps(run.stepper(), summary.energy_scale); !given.empty()) add(given);
   if (const std::string closing = closing_text(run.equations(), run.stepper()); !closing.empty()) add(closing);
   return text;
 }

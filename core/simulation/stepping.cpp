@@ -6,6 +6,7 @@
 #include <string>
 
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/given_steps.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/simulation/same_instant.hpp"
 
@@ -13,14 +14,21 @@ namespace withy {
 
 using Cause = SteppingEnd::Cause;
 
+namespace {
+
+bool has_given_steps(const Stepper& stepper) { return dynamic_cast<const GivenSteps*>(&stepper) != nullptr; }
+
+}  // namespace
+
 Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::unique_ptr<Stepper> stepper,
                    const SteppingOptions& options)
     : stepper_(std::move(stepper)),
       clocks_(model, equations),
       jumps_(discontinuities(model)),
-      zeros_(model, options.events, stepper_->state()),
+      zeros_(model, options.events, stepper_->state(), options.end, !has_given_steps(*stepper_)),
       actions_(options.actions),
       times_(stepper_->state().time, options.output, options.end),
+      courses_(model, stepper_->state().time, has_given_steps(*stepper_) ? stepper_->state().time : options.end),
       end_(options.end),
       sample_(stepper_->state()) {
   if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr &&
@@ -161,7 +169,7 @@ bool Stepping::to(double limit, bool watching) {
       if (!zeros_.empty()) before_ = state();
     }
     const std::size_t made = stepper_->statistics().evaluations;
-    ended_.step = stepper_->step(limit);
+    ended_.step = stepper_->step(std::min({limit, courses_.latest_end(state().time), end_beyond_kink()}));
     step_evaluations_ += stepper_->statistics().evaluations - made;
     check_arithmetic();
     if (ended_.step.outcome != StepResult::Outcome::ok) return sound(state()) && end(Cause::failed);
@@ -214,13 +222,16 @@ bool Stepping::act_on_zeros() {
   const auto acts = [&](const Zero& z) { return changes_the_run(z); };
   const auto first = std::find_if(handled_.begin(), handled_.end(), acts);
   if (first == handled_.end()) {
-    for (const Zero& zero : handled_) {
-      note(zero);
-      zeros_.pass(zero);
-    }
+    for (const Zero& zero : handled_) note(zero);
+    zeros_.pass();
     return true;
   }
   const double apart = coincidence(*first), at = first->time;
+  if (zeros_.is_kink(first->function)) {
+    const auto back =
+        std::find_if(first + 1, handled_.end(), [&](const Zero& z) { return z.function == first->function; });
+    beyond_kink_ = at + ((back != handled_.end() ? back->time : state().time) - at) / 4;
+  }
   const auto at_once = [&](const Zero& z) { return z.time >= at - apart; };
   const auto beyond = [&](const Zero& z) { return z.time > at + apart; };
   // Those beyond the cut are found again, or never happen.
@@ -228,6 +239,11 @@ bool Stepping::act_on_zeros() {
   const auto here = std::find_if(handled_.begin(), handled_.end(), at_once);
   std::for_each(handled_.begin(), here, [&](const Zero& z) { note(z); });
   return cut_at(at, static_cast<std::size_t>(here - handled_.begin()));
+}
+
+/// The step after a kink has its stages beyond it, and not past the way back again.
+double Stepping::end_beyond_kink() const {
+  return state().time < beyond_kink_ ? beyond_kink_ : std::numeric_limits<double>::infinity();
 }
 
 /// Takes the last step back, steps to the time of a zero and does there what is to be done: of the zeros handled the
@@ -251,6 +267,8 @@ bool Stepping::cut_at(double time, std::size_t noted) {
     zero.time = std::min(zero.time, sample_.time);
     if (const auto load = zeros_.switching(zero.function)) {
       if (clocks_.renew(sample_, load->first, {load->second, zero.direction})) observer_->switched();
+    } else if (zeros_.is_kink(zero.function)) {
+      continue;  // the next step begins at it
     } else if (actions_ != nullptr && actions_->acts(zeros_.index(zero))) {
       happened_.push_back(zeros_.index(zero));
     } else {
@@ -275,6 +293,7 @@ void Stepping::remember(Memory& memory) {
   zeros_.remember(memory);
   times_.remember(memory);
   memory(last_zero_);
+  memory(beyond_kink_);
   memory(zeros_at_once_);
   memory(step_evaluations_);
 }

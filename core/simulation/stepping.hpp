@@ -15,6 +15,7 @@
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_event.hpp"
 #include "withy/core/simulation/run_times.hpp"
+#include "withy/core/simulation/time_courses.hpp"
 
 namespace withy {
 
@@ -108,6 +109,7 @@ class Stepping {
   [[nodiscard]] double next_instant() const;
   [[nodiscard]] bool changes_the_run(const Zero& zero) const;
   bool act_on_zeros();
+  [[nodiscard]] double end_beyond_kink() const;
   bool cut_at(double time, std::size_t noted);
   void note(const Zero& zero);
   bool renew_clocks();
@@ -124,6 +126,7 @@ class Stepping {
   ZeroWatch zeros_;
   EventActions* actions_;
   OutputTimes times_;
+  TimeCourses courses_;  ///< nothing of a stepper whose steps are given
   double end_;
   State sample_;
   State before_;    ///< where the last step began; kept only where zeros are watched
@@ -132,6 +135,7 @@ class Stepping {
   std::vector<Zero> handled_;  ///< zeros of the last step, or those up to where it is cut
   SteppingEnd ended_;
   double last_zero_ = -std::numeric_limits<double>::infinity();  ///< time of the last one that changed the run
+  double beyond_kink_ = last_zero_;                              ///< where the step ends that begins at a kink [s]
   int zeros_at_once_ = 0;
   std::size_t step_evaluations_ = 0;
   FloatingPointGuard* arithmetic_ = nullptr;  ///< of the run under way

@@ -1,0 +1,197 @@
+// Where steps are as long as the motion allows, what happens within them is seen all the same: stops, switches, pulses,
+// events and extremes of outputs, singular loops. Against closed forms.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "withy/core/simulation/output_statistics.hpp"
+#include "withy/core/simulation/run_times.hpp"
+#include "withy/tests/loads/scene_run.hpp"
+
+namespace withy {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::array integrators_with_estimates{"dopri5", "dop853",       "radau",       "imex",
+                                                "cvode",  "rk4-adaptive", "rosenbrock-w"};
+
+/// A kilogram on a slide, thrust back by a newton: x = 3 t − t²/2 from x = 0 while nothing else acts.
+std::string thrown(const std::string& integrator, double end, const std::string& loads, const std::string& more = "") {
+  return "format: withy/1\ntime: {end: " + std::to_string(end) + ", output: " + std::to_string(end) +
+         "}\nintegrator: " + integrator +
+         "\nbodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+         "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}\n"
+         "initial: {hinges: {slide: {rate: [3]}}}\n"
+         "loads:\n  back: {type: hinge-effort, hinge: slide, law: constant, value: -1}\n" +
+         loads + more;
+}
+
+/// Where it is after 8 s with an elastic stop: in small steps of its own.
+double thrown_at_a_stop(double stop) {
+  constexpr double stiffness = 1e5, onset = 1e-3;
+  constexpr int steps = 1600000;
+  const auto acceleration = [&](double x) {
+    const double depth = x - stop;
+    if (depth <= 0) return -1.0;
+    return -1 - (depth < onset ? stiffness * depth * depth / (2 * onset) : stiffness * (depth - onset / 2));
+  };
+  const double h = 8.0 / steps;
+  double x = 0, v = 3;
+  for (int i = 0; i < steps; ++i) {  // velocity Verlet
+    v += h / 2 * acceleration(x);
+    x += h * v;
+    v += h / 2 * acceleration(x);
+  }
+  return x;
+}
+
+TEST(LongSteps, MeetAStopThatTheyWouldGoThroughAndComeBackFrom) {
+  for (const double stop : {4.3, 4.4, 4.48}) {
+    const double expected = thrown_at_a_stop(stop);
+    for (const char* integrator : integrators_with_estimates) {
+      test::LoadedScene s(thrown(std::string("{name: ") + integrator + "}", 8,
+                                 "  stop: {type: hinge-limit, hinge: slide, upper: " + std::to_string(stop) +
+                                     ", stiffness: 1e5, onset: 0.001}\n"));
+      // Free flight ends at −8 m.
+      EXPECT_NEAR(s.position(s.run().back(), "slide"), expected, 2e-3) << integrator << ", " << stop;
+    }
+  }
+}
+
+/// Where it is after 20 s between relays of 10 N that fire beyond `on` and rest within 1 m: parabolas.
+double between_relays(double on) {
+  double t = 0, x = 0, v = 3, fired = 0;
+  while (true) {
+    const double a = -1 + fired;
+    // The next time at which x + v s + a s²/2 is at what switches.
+    double next = std::numeric_limits<double>::infinity();
+    for (const double level : fired == 0 ? std::array{on, -on} : std::array{1.0, -1.0}) {
+      if (fired != 0 && level * fired > 0) continue;  // a relay that pushes down rests once x is below 1
+      const double root = v * v - 2 * a * (x - level);
+      if (root < 0) continue;
+      for (const double s : {(-v - std::sqrt(root)) / a, (-v + std::sqrt(root)) / a})
+        if (s > 1e-9) next = std::min(next, s);
+    }
+    const double s = std::min(next, 20 - t);
+    x += v * s + a * s * s / 2;
+    v += a * s;
+    t += s;
+    if (t >= 20) return x;
+    fired = fired != 0 ? 0 : x > 0 ? -10 : 10;
+  }
+}
+
+TEST(LongSteps, SwitchARelayThatIsPassedForAWhile) {
+  for (const double on : {4.4, 4.48}) {
+    for (const char* integrator : integrators_with_estimates) {
+      test::LoadedScene s(
+          thrown(std::string("{name: ") + integrator + "}", 20,
+                 "  relay: {type: hinge-relay, hinge: slide, effort: 10, on: " + std::to_string(on) + ", off: 1}\n"));
+      // The default tolerance, 1e-6 of some 20 m, over some ten switchings.
+      EXPECT_NEAR(s.position(s.run().back(), "slide"), between_relays(on), 1e-4) << integrator << ", " << on;
+    }
+  }
+}
+
+TEST(LongSteps, SeeAPulseInAFormulaOfTheTime) {
+  const double impulse = 1000 * 0.02 * std::sqrt(std::numbers::pi);
+  for (const char* integrator : integrators_with_estimates) {
+    const std::string name = std::string("{name: ") + integrator + "}";
+    test::LoadedScene load(
+        thrown(name, 20, "  pulse: {type: expression, hinge: slide, value: 1000 * exp(-((t - 8) / 0.02) ^ 2)}\n"));
+    EXPECT_NEAR(load.rate(load.run().back(), "slide"), 3 - 20 + impulse, 1e-3) << integrator;
+    test::LoadedScene base(thrown(
+        name, 20, "  shock: {type: base-excitation, formula: [1000 * exp(-((t - 8) / 0.02) ^ 2), \"0\", \"0\"]}\n"));
+    EXPECT_NEAR(base.rate(base.run().back(), "slide"), 3 - 20 - impulse, 1e-3) << integrator;
+  }
+}
+
+/// A rotor that turns freely at 50 rad/s, a place on it, and an event as it comes by.
+std::string rotor(const std::string& integrator) {
+  return "format: withy/1\ntime: {end: 20, output: 20}\nintegrator: {name: " + integrator + R"(}
+bodies: {rotor: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.1, 0, 0, 0], frames: {rim: {position: [1, 0, 0]}}}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: rotor}}
+initial: {hinges: {axle: {rate: [50]}}}
+outputs: {rim: {type: frame, of: rotor.rim, show: position, statistics: true}}
+events: {by: {signal: rim.y, value: 0.9, direction: up}}
+)";
+}
+
+TEST(LongSteps, OfAFreeRotorHaveItsEventsAndStatistics) {
+  for (const char* integrator : integrators_with_estimates) {
+    test::LoadedScene s(rotor(integrator));
+    RunOptions options;
+    options.end = options.output = 20;
+    options.events = s.scene.events;
+    StatisticsWatch watch(s.scene.outputs, {"rim"}, *s.equations, discontinuities(*s.scene.model),
+                          StepParts(*s.scene.model, 0, 20));
+    const RunSummary summary =
+        simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options, {}, &watch);
+    ASSERT_EQ(summary.status, RunStatus::completed) << summary.message;
+    // sin(50 t) passes 0.9 at arcsin 0.9 in each of 1000/2π turns.
+    EXPECT_EQ(summary.events.size(), 159U) << integrator;
+    const OutputStatistics& x = watch.results().front();
+    ASSERT_EQ(x.name, "rim.x");
+    EXPECT_NEAR(x.integral, std::sin(1000) / 50, 1e-6) << integrator;
+    EXPECT_NEAR(x.rms(), std::sqrt(0.5 + std::sin(2000) / 4000), 1e-5) << integrator;
+    EXPECT_NEAR(x.greatest, 1, 1e-9) << integrator;
+    EXPECT_NEAR(x.least, -1, 1e-9) << integrator;
+  }
+}
+
+TEST(LongSteps, ThatAreGivenAreToldWhereTheirEnergyBalancesAllTheSame) {
+  const auto run = [](const std::string& step) {
+    test::LoadedScene s("format: withy/1\ntime: {end: 20, output: 20}\nintegrator: {name: gauss, step: " + step + R"(}
+bodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+initial: {hinges: {slide: {position: [0.123], rate: [3]}}}
+loads: {stops: {type: hinge-limit, hinge: slide, lower: -1, upper: 1, stiffness: 1e5, onset: 0.001}}
+)");
+    s.run();
+    return s.summary;
+  };
+  // A contact lasts π/√(k/m), 0.01 s.
+  const RunSummary coarse = run("0.01"), fine = run("0.0005");
+  EXPECT_LT(coarse.energy_drift, 1e-9);
+  EXPECT_THAT(coarse.message, HasSubstr("is too long for what acts"));
+  EXPECT_THAT(fine.message, Not(HasSubstr("is too long for what acts")));
+}
+
+TEST(LongSteps, ThatGrowWithoutEndAreNotTrustedWhereTheirErrorPassesThroughZero) {
+  // cos t in steps of RK4 beyond 2√2, to which it is stable.
+  test::LoadedScene s(R"(format: withy/1
+time: {end: 3000, output: 3000}
+integrator: {name: rk4, step: 2.84}
+bodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 1}}
+initial: {hinges: {slide: {position: [1]}}}
+)");
+  RunOptions options;
+  options.end = options.output = 3000;
+  options.drift_limit = 0.01;
+  const RunSummary summary = simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options, {});
+  EXPECT_EQ(summary.status, RunStatus::inaccurate);
+  EXPECT_LT(std::abs(s.position(summary.final, "slide")), 1.01) << summary.message;
+}
+
+TEST(LongSteps, OfARunWithoutAnEndReachThatOfWhatAnEventSets) {
+  test::LoadedScene s(R"(format: withy/1
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+bodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+initial: {hinges: {slide: {rate: [0.3]}}}
+loads: {jet: {type: thruster, frame: block, thrust: 5, direction: [1, 0, 0], firings: [[1, 2]]}}
+events: {later: {at: 0.5, do: {set: "loads.jet.firings=[[3,4]]"}}}
+)");
+  EXPECT_EQ(end_of_run(s.scene), 4);
+}
+
+}  // namespace
+}  // namespace withy

@@ -1,0 +1,86 @@
+// Singular configurations of closed loops are seen wherever in a step they lie and however many loops are in one, and
+// steps that turn far are no singularity.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <regex>
+#include <string>
+
+#include "four_bar.hpp"
+
+namespace withy::test {
+namespace {
+
+/// A parallelogram of cranks of 1 m that are 2 m apart, at z = `place`, turning at 2 rad/s from an angle in degrees.
+struct Parallelogram {
+  std::string bodies, hinges, constraints, initial, guess;
+  Parallelogram(int place, const std::string& angle) {
+    const std::string i = std::to_string(place);
+    const std::string link = ": {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.1, 0, 0, 0], frames: {p: {position: [";
+    bodies = "  c" + i + link + "1, 0, 0]}}}\n  k" + i + link + "2, 0, 0]}}}\n  r" + i + link + "1, 0, 0]}}}\n";
+    const std::string turns = ": {type: revolute, axis: [0, 0, 1], parent: ";
+    hinges = "  m" + i + turns + "world, child: c" + i + ", offset: {position: [0, 0, " + i + "]}}\n  e" + i + turns +
+             "c" + i + ".p, child: k" + i + "}\n  q" + i + turns + "world, child: r" + i +
+             ", offset: {position: [2, 0, " + i + "]}}\n";
+    constraints = "  l" + i + ": {type: hinge, hinge: revolute, axis: [0, 0, 1], a: k" + i + ".p, b: r" + i + ".p}\n";
+    initial = "    m" + i + ": {position: " + angle + " deg, rate: 2}\n";
+    guess = "      e" + i + ": {position: -" + angle + " deg}\n      q" + i + ": {position: " + angle + " deg}\n";
+  }
+};
+
+std::string scene_of(const Parallelogram& first, const Parallelogram& second) {
+  return "format: withy/1\ngravity: [0, 0, 0]\ntime: {end: 4}\nbodies:\n" + first.bodies + second.bodies + "hinges:\n" +
+         first.hinges + second.hinges + "constraints:\n" + first.constraints + second.constraints +
+         "initial:\n  hinges:\n" + first.initial + second.initial + "  guess:\n    hinges:\n" + first.guess +
+         second.guess;
+}
+
+TEST(SingularLoops, AreSeenWhereTwoPassOneAtTheSameTime) {
+  const Made made(scene_of({0, "90"}, {1, "90"}));
+  const RunSummary summary = run(made, 4);
+  EXPECT_EQ(summary.status, RunStatus::singular);
+  // Links lie in one line at 180 degrees, 90 degrees on at 2 rad/s; the interval told is no wider than a step over
+  // 4096.
+  std::smatch told;
+  ASSERT_TRUE(std::regex_search(summary.message, told, std::regex("between t = ([0-9.]+) and ([0-9.]+) s")))
+      << summary.message;
+  EXPECT_NEAR(std::stod(told[1]), std::numbers::pi / 4, 1e-3);
+  EXPECT_NEAR(std::stod(told[2]), std::numbers::pi / 4, 1e-3);
+  // The last state is one before.
+  EXPECT_LT(summary.final.time, std::numbers::pi / 4);
+}
+
+TEST(SingularLoops, AreSeenWhereARunBeginsInOne) {
+  const Made made(scene_of({0, "180"}, {1, "90"}));
+  const RunSummary summary = run(made, 0.4);
+  EXPECT_EQ(summary.status, RunStatus::singular);
+  EXPECT_THAT(summary.message, testing::HasSubstr("begins in a singular configuration"));
+}
+
+TEST(SingularLoops, AreNotSlotsThatTurnFarInAStep) {
+  const Made made(R"(format: withy/1
+gravity: [0, 0, 0]
+time: {end: 20}
+bodies:
+  arm: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  puck: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}
+  plane: {type: planar, parent: world, child: puck}
+constraints:
+  slot: {type: hinge, hinge: prismatic, axis: [1, 0, 0], a: arm, b: puck}
+motions:
+  turn: {type: constant-rate, hinge: axle, rate: 3}
+loads:
+  x: {type: hinge-spring, hinge: plane, component: 1, stiffness: 25, damping: 20}
+  y: {type: hinge-spring, hinge: plane, component: 2, stiffness: 25, damping: 20}
+)");
+  const RunSummary summary = run(made, 20);
+  EXPECT_EQ(summary.status, RunStatus::completed) << summary.message;
+  EXPECT_GT(summary.steps.largest_step * 3, std::numbers::pi / 2);
+}
+
+}  // namespace
+}  // namespace withy::test
