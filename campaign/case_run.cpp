@@ -97,7 +97,8 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
   }
   std::optional<StatisticsWatch> watch;
   if (!kept_->watched().empty())
-    watch.emplace(scene.outputs, kept_->watched(), equations, discontinuities(*scene.model));
+    watch.emplace(scene.outputs, kept_->watched(), equations, discontinuities(*scene.model),
+                  StepParts(*scene.model, scene.initial.time, options.end));
   RunSummary summary = withy::simulate(
       *scene.model, equations, *scene.integrator, scene.initial, options,
       [this](const State& state) { kept_->see_output(state, 0); }, watch ? &*watch : nullptr, Attention::outcome);

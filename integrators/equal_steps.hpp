@@ -3,12 +3,13 @@
 #pragma once
 
 #include "one_step.hpp"
+#include "withy/core/plugin/given_steps.hpp"
 #include "withy/core/plugin/parameters.hpp"
 
 namespace withy {
 
 /// Divides every interval between two landings into equal steps, none longer than `step` [s].
-class EqualSteps : public OneStep {
+class EqualSteps : public OneStep, public GivenSteps {
  public:
   EqualSteps(const EquationsOfMotion& equations, const State& start, double step)
       : OneStep(equations, start), step_(step) {}

@@ -28,6 +28,7 @@ class GaussStepper final : public EqualSteps {
     lost_.setZero();
   }
   [[nodiscard]] std::vector<std::string> remarks() const override { return with_unsolved(jacobian_.remarks()); }
+  [[nodiscard]] WorkGap greatest_gap() const override { return gap_; }
 
  private:
   static constexpr int most_iterations = 50;
@@ -70,6 +71,11 @@ class GaussStepper final : public EqualSteps {
   void accepted(double h) override {
     stages_.accept(h);
     lost_.swap(lost_next_);
+    const Eigen::Index work = size() - 1;
+    if (jacobian_.size() == 0) return;
+    const double middle = stages_.slopes()(work, 1), ends = previous_slope_[work] + slope_[work];
+    const double gap = std::abs(y()[work] - previous_[work] - h / 6 * (ends + 4 * middle));
+    if (gap > gap_.work) gap_ = {gap, state_.time, h};
   }
   [[nodiscard]] int most_halvings() const override { return 19; }
 
@@ -82,6 +88,9 @@ class GaussStepper final : public EqualSteps {
     sizes_.remember(memory);
     memory(lost_);
     memory(known_);
+    memory(gap_.work);
+    memory(gap_.time);
+    memory(gap_.step);
   }
 
   StepJacobian jacobian_;
@@ -89,6 +98,7 @@ class GaussStepper final : public EqualSteps {
   Sizes sizes_;
   Eigen::ArrayXd tolerance_, lost_, lost_next_;
   bool known_ = false;  ///< the Jacobian
+  WorkGap gap_;
 };
 
 class Gauss final : public Integrator {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "withy/core/plugin/kinks.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
@@ -40,7 +41,7 @@ struct Limits {
   double operator()(double x, double rate) const noexcept { return push(lower - x, -rate) - push(x - upper, rate); }
 };
 
-class BoundLimit final : public BoundLoad, public LoadNumbers {
+class BoundLimit final : public BoundLoad, public LoadNumbers, public Kinks {
  public:
   /// \param unit of the coordinate
   BoundLimit(const Limits& limits, std::size_t position, std::size_t speed, std::string unit)
@@ -48,7 +49,12 @@ class BoundLimit final : public BoundLoad, public LoadNumbers {
   /// How far the nearest stop is.
   std::vector<SensorColumn> numbers() const override { return {{"margin", unit_}}; }
   void show(const LoadView& view, std::span<double> values) const noexcept override {
-    const double x = view.positions()[position_];
+    kinks(view.positions(), view.speeds(), values);
+  }
+  std::size_t kinks() const override { return 1; }
+  void kinks(std::span<const double> positions, std::span<const double> /*speeds*/,
+             std::span<double> values) const noexcept override {
+    const double x = positions[position_];
     values[0] = std::min(x - limits_.lower, limits_.upper - x);
   }
   std::size_t scratch() const override { return 0; }

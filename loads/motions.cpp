@@ -2,8 +2,10 @@
 /// Prescribed motions of hinges.
 #include <memory>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
+#include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/formula.hpp"
 #include "withy/core/plugin/motion.hpp"
@@ -14,15 +16,19 @@
 namespace withy {
 namespace {
 
+struct FormulaMotion;
+
 /// A coordinate on a trajectory.
 template <class Law>
-class Following final : public Motion {
+class Following final : public Motion, public CourseOfTime {
  public:
   explicit Following(Law law) : law_(std::move(law)) {}
   bool locks() const override { return false; }
   MotionPoint at(double t) const noexcept override { return law_(t); }
   std::vector<double> discontinuities() const override { return law_.jumps(); }
   double end() const override { return law_.end(); }
+  std::size_t courses() const override { return std::is_same_v<Law, FormulaMotion> ? 1 : 0; }
+  void course(double t, std::span<double> values) const noexcept override { values[0] = law_(t).acceleration; }
 
  private:
   Law law_;

@@ -52,7 +52,7 @@ class Watch final : public SteppingObserver {
       walk.reason = "the determinant of the mass matrix changed its sign";
       return false;
     }
-    if (const std::string fault = loops_.fault(stepper.state()); !fault.empty()) {
+    if (const std::string fault = loops_.fault(stepper); !fault.empty()) {
       stop(fault);
       return false;
     }

@@ -22,25 +22,16 @@ double dot(const double* a, const double* b, std::size_t n) {
   return sum;
 }
 
-/// Of det A, n × n row-major, which is destroyed; 0 where a pivot is.
-int sign_of_determinant(double* A, std::size_t n) {
-  int sign = 1;
+/// Whether a symmetric matrix, n × n row-major, of which the lower triangle counts, is positive. Destroys it.
+bool positive(double* A, std::size_t n) {
   for (std::size_t k = 0; k < n; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < n; ++i)
-      if (std::abs(A[i * n + k]) > std::abs(A[pivot * n + k])) pivot = i;
-    if (A[pivot * n + k] == 0) return 0;
-    if (pivot != k) {
-      std::swap_ranges(A + pivot * n, A + (pivot + 1) * n, A + k * n);
-      sign = -sign;
-    }
-    if (A[k * n + k] < 0) sign = -sign;
+    if (!(A[k * n + k] > 0)) return false;
     for (std::size_t i = k + 1; i < n; ++i) {
       const double f = A[i * n + k] / A[k * n + k];
-      for (std::size_t j = k; j < n; ++j) A[i * n + j] -= f * A[k * n + j];
+      for (std::size_t j = k + 1; j <= i; ++j) A[i * n + j] -= f * A[j * n + k];
     }
   }
-  return sign;
+  return true;
 }
 
 }  // namespace
@@ -260,18 +251,32 @@ bool ClosedEquations::right_way_round(std::span<const double> y, std::size_t ind
   return paths_.right_way_round(index, of_paths_.in(work));
 }
 
-bool ClosedEquations::passes_singularity(std::span<const double> before, std::span<const double> after,
-                                         std::size_t rank, Work& work) const noexcept {
-  const std::span<double> later = J_after_.in(work), D = other_A_.in(work);
+bool ClosedEquations::keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
+                                 Work& work) const noexcept {
+  const std::span<double> later = J_after_.in(work), B = other_A_.in(work);
   find_rows(after, later, work);
-  if (!factorize(before, work).ok()) return true;
+  if (!factorize(before, work).ok()) return false;
   const PivotedFactors f = factors(work);
-  if (f.rank < rank) return true;
+  if (f.rank < rank) return false;
   const std::span<const double> Z = Z_.in(work);
-  for (std::size_t i = 0; i < f.rank; ++i)
-    for (std::size_t j = 0; j < f.rank; ++j)
-      D[i * f.rank + j] = dot(&Z[f.order[i] * speeds_], &later[f.order[j] * speeds_], speeds_);
-  return sign_of_determinant(D.data(), f.rank) <= 0;
+  const std::size_t r = f.rank;
+  const auto L = [&f](std::size_t i, std::size_t k) { return f.L[i * f.size + k]; };
+  for (std::size_t i = 0; i < r; ++i)
+    for (std::size_t j = 0; j < r; ++j)
+      B[i * r + j] = dot(&Z[f.order[i] * speeds_], &later[f.order[j] * speeds_], speeds_);
+  for (std::size_t i = 0; i < r; ++i)
+    for (std::size_t j = 0; j < r; ++j) {
+      for (std::size_t k = 0; k < i; ++k) B[i * r + j] -= L(i, k) * B[k * r + j];
+      B[i * r + j] /= L(i, i);
+    }
+  for (std::size_t i = 0; i < r; ++i)
+    for (std::size_t j = 0; j < r; ++j) {
+      for (std::size_t k = 0; k < j; ++k) B[i * r + j] -= B[i * r + k] * L(j, k);
+      B[i * r + j] /= L(j, j);
+    }
+  for (std::size_t i = 0; i < r; ++i)
+    for (std::size_t j = 0; j < i; ++j) B[i * r + j] = 0.5 * (B[i * r + j] + B[j * r + i]);
+  return positive(B.data(), r);
 }
 
 std::vector<LoopCount> ClosedEquations::counts(std::span<const double> y, Work& work) const {

@@ -35,8 +35,8 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
            Work& work) const noexcept override;
   bool right_way_round(std::span<const double> y, std::size_t index, Work& work) const noexcept override;
   Closing close(std::span<double> y, Work& work) const noexcept override;
-  bool passes_singularity(std::span<const double> before, std::span<const double> after, std::size_t rank,
-                          Work& work) const noexcept override;
+  bool keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
+                  Work& work) const noexcept override;
   std::vector<LoopCount> counts(std::span<const double> y, Work& work) const override;
   void multipliers(double t, std::span<const double> y, std::span<double> multipliers,
                    Work& work) const noexcept override;

@@ -47,11 +47,12 @@ class ClosedLoops {
   /// the sense of M; what motions prescribe stays. Allocates nothing.
   /// \param work of EquationsOfMotion::make_work
   virtual Closing close(std::span<double> y, Work& work) const noexcept = 0;
-  /// Whether the equations lose rank on the way from one closed state to the next: where they do, the motion has more
-  /// than one way to go on. The sign of det(J₁ M⁻¹ J₂ᵀ) over independent rows tells, or that there are less than
-  /// `rank`.
-  [[nodiscard]] virtual bool passes_singularity(std::span<const double> before, std::span<const double> after,
-                                                std::size_t rank, Work& work) const noexcept = 0;
+  /// Whether the equations surely keep their rank on the straight way from one closed state to the next: with rows J₁
+  /// and J₂ of the two and L Lᵀ = J₁ M⁻¹ J₁ᵀ the symmetric part of L⁻¹ J₁ M⁻¹ J₂ᵀ L⁻ᵀ is positive, which is the unit
+  /// matrix where both are one. Where rank is lost in between it never is; else states nearer to each other tell.
+  /// \param rank of independent rows; false where there are less
+  [[nodiscard]] virtual bool keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
+                                        Work& work) const noexcept = 0;
   /// Equations of each loop at a state, counted by the rank of J M⁻¹ Jᵀ; speeds that motions prescribe are not free.
   [[nodiscard]] virtual std::vector<LoopCount> counts(std::span<const double> y, Work& work) const = 0;
   /// Multipliers λ at (t, y) [N], one an equation: where equations depend on each other, of all that give the same

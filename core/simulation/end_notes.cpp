@@ -1,6 +1,7 @@
 #include "withy/core/simulation/end_notes.hpp"
 
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/plugin/given_steps.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
@@ -24,6 +25,18 @@ std::string note_on_missed_events(const Model& model, const State& end) {
   }
   if (count == 0) return {};
   return (count > 1 ? "The events " : "The event ") + names + " did not happen.";
+}
+
+std::string note_on_given_steps(const Stepper& stepper, double scale) {
+  constexpr double too_much = 0.1;
+  const auto* given = dynamic_cast<const GivenSteps*>(&stepper);
+  if (given == nullptr || !(scale > 0)) return {};
+  const GivenSteps::WorkGap gap = given->greatest_gap();
+  if (!(gap.work > too_much * scale)) return {};
+  return "A step of " + brief(gap.step) + " s is too long for what acts, most at t = " + brief(gap.time) +
+         " s: the work over it is known to " + brief(gap.work / scale) +
+         " of the greatest energy, though energy balances: the method's steps do that by construction. Take shorter "
+         "steps, or an integrator that controls its error.";
 }
 
 std::string note_on_impulses(const Model& model, const State& end) {

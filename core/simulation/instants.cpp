@@ -8,6 +8,7 @@
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/held_numbers.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/parabola.hpp"
 #include "withy/core/simulation/same_instant.hpp"
 
 namespace withy {
@@ -48,7 +49,7 @@ Clocks::Clocks(const Model& model, const EquationsOfMotion& equations) : model_(
 void Clocks::begin(State& state) {
   if (const auto begun = place_of_begun(model_); !begun || state.y[*begun] == 0) {
     renewal_.at(state);
-    for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {});
+    for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {.begins = true});
     if (begun) state.y[*begun] = 1;
   }
   go_on_after(state.time);
@@ -104,16 +105,26 @@ bool Clocks::renew(State& state, const LoadSlot& slot, const Crossing& crossing)
   return !std::equal(own.begin(), own.end(), before_.begin());
 }
 
-ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start)
-    : model_(model), events_(events), inside_(start) {
+ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start, double end, bool kinks)
+    : model_(model), events_(events), inside_(start), begun_(start.y) {
   for (const LoadSlot& slot : model.layout().discrete_slots) {
     if (part_of(model, slot).switches() == 0) continue;
     switches_ += part_of(model, slot).switches();
     slots_.push_back(slot);
   }
-  values_.resize(switches_ + events.size());
+  std::size_t of_kinks = 0;
+  for (const LoadNode& node : model.loads()) {
+    const auto* kinked = kinks ? dynamic_cast<const Kinks*>(node.load.get()) : nullptr;
+    if (kinked == nullptr || kinked->kinks() == 0) continue;
+    kinks_.push_back(kinked);
+    of_kinks += kinked->kinks();
+  }
+  values_.resize(switches_ + events.size() + of_kinks);
   signs_.resize(values_.size());
   unsure_.assign(values_.size(), -1);
+  ends_.resize(values_.size());
+  for (Row& row : rows_) row.values.resize(values_.size());
+  if (!empty()) parts_.emplace(model, start.time, end);
   begin_at(start);
 }
 
@@ -126,10 +137,15 @@ void ZeroWatch::evaluate(double t, std::span<const double> y, std::span<double> 
     at += part.switches();
   }
   for (const RunEvent& event : events_) values[at++] = event.function(t, y);
+  for (const Kinks* kinked : kinks_) {
+    kinked->kinks(positions(model_, y), speeds(model_, y), values.subspan(at, kinked->kinks()));
+    at += kinked->kinks();
+  }
 }
 
 bool ZeroWatch::noticed(std::size_t function, int direction) const {
-  return function < switches_ || event(function).direction == 0 || event(function).direction == direction;
+  return function < switches_ || is_kink(function) || event(function).direction == 0 ||
+         event(function).direction == direction;
 }
 
 void ZeroWatch::begin_at(const State& state) {
@@ -151,7 +167,7 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& before, const S
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     const int now = sign(values_[f]);
     if (now == 0) continue;
-    if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
+    if (signs_[f] * now < 0 && noticed(f, now) && !is_kink(f)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
   }
   // As near as interpolation and root finding come, and as near as this state is.
@@ -169,56 +185,97 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::leap(const State& state) {
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     if (unsure_[f] >= 0 && std::abs(values_[f] - landed_[f]) <= unsure_[f]) continue;
     const int now = sign(values_[f]);
-    if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
+    if (signs_[f] * now < 0 && noticed(f, now) && !is_kink(f)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
   }
   return zeros_;
 }
 
+void ZeroWatch::look_at(const Stepper& stepper, double t) {
+  stepper.interpolate(t, inside_.y);
+  evaluate(t, inside_.y, values_);
+}
+
+double ZeroWatch::zero_between(const Stepper& stepper, std::size_t f, double a, double b, double value_at_b) {
+  const auto value = [&](double t) {
+    look_at(stepper, t);
+    return values_[f];
+  };
+  const double value_at_a = value(a);
+  if (value_at_a * value_at_b >= 0) return a;  // rounding: it has passed at the last state already
+  std::uintmax_t most = 100;
+  return boost::math::tools::toms748_solve(value, a, b, value_at_a, value_at_b,
+                                           boost::math::tools::eps_tolerance<double>(50), most)
+      .second;
+}
+
+void ZeroWatch::cross(const Stepper& stepper, std::size_t f, const Row& begin, const Row& end) {
+  const int now = sign(end.values[f]);
+  if (now == 0 || now == before_[f]) return;
+  // Else it began on its zero, or is a kink that the step's end has seen.
+  if (before_[f] != 0 && noticed(f, now) && !is_kink(f))
+    zeros_.push_back({zero_between(stepper, f, begin.time, end.time, end.values[f]), f, now});
+  before_[f] = now;
+}
+
+void ZeroWatch::cross_there_and_back(const Stepper& stepper, std::size_t f, std::size_t interval) {
+  const Row &a = rows_[interval], &b = rows_[interval + 1];
+  const int outside = sign(a.values[f]);
+  if (outside == 0 || sign(b.values[f]) != outside || before_[f] == 0) return;
+  std::array<double, 3> t{}, x{};
+  for (std::size_t k = 0; k < 3; ++k) t[k] = rows_[k].time, x[k] = rows_[k].values[f];
+  constexpr int most_looks = 3;
+  for (int look = 0; look < most_looks; ++look) {
+    const double at = vertex(t, x);
+    const bool within = at > a.time && at < b.time;
+    if (!within || !(std::abs(along(t, x, at)) < std::min(std::abs(a.values[f]), std::abs(b.values[f])))) return;
+    look_at(stepper, at);
+    const double there = values_[f];
+    if (sign(there) == -outside) {
+      const auto found = [&](const Zero& z) { return z.function == f && z.time >= a.time && z.time <= b.time; };
+      if (std::any_of(zeros_.begin(), zeros_.end(), found)) return;
+      if (noticed(f, -outside)) zeros_.push_back({zero_between(stepper, f, a.time, at, there), f, -outside});
+      if (noticed(f, outside) && !is_kink(f)) zeros_.push_back({zero_between(stepper, f, at, b.time, b.values[f]), f, outside});
+      return;
+    }
+    t = {a.time, at, b.time};
+    x = {a.values[f], there, b.values[f]};
+  }
+}
+
 const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, double from) {
-  // A function may pass zero and come back within a step; looks inside see what lasts longer than a fraction of it.
-  constexpr int looks = 4;
+  // A function may pass zero and come back within a step: between looks a parabola through three of them tells.
+  constexpr std::size_t looks_in_a_part = 4;
   const double to = stepper.state().time;
-  const auto look_at = [&](double t) {
-    stepper.interpolate(t, inside_.y);
-    evaluate(t, inside_.y, values_);
-  };
-  // The end of the bracket, where the function has the new sign.
-  const auto zero_between = [&](std::size_t f, double a, double b, double value_at_b) {
-    const auto value = [&](double t) {
-      look_at(t);
-      return values_[f];
-    };
-    const double value_at_a = value(a);
-    if (value_at_a * value_at_b >= 0) return a;  // rounding: it has passed at the last state already
-    std::uintmax_t most = 100;
-    return boost::math::tools::toms748_solve(value, a, b, value_at_a, value_at_b,
-                                             boost::math::tools::eps_tolerance<double>(50), most)
-        .second;
-  };
   zeros_.clear();
   std::fill(unsure_.begin(), unsure_.end(), -1);
   before_ = start_signs_ = signs_;
-  double begin = from;
-  for (int look = 1; look <= looks; ++look) {
-    const double end = look == looks ? to : from + (to - from) * look / looks;
-    look_at(end);
-    ends_ = values_;
-    for (std::size_t f = 0; f < ends_.size(); ++f) {
-      const int now = sign(ends_[f]);
-      if (now == 0 || now == before_[f]) continue;
-      if (before_[f] == 0) {
-        signs_[f] = now;  // it began on its zero
-      } else if (noticed(f, now)) {
-        zeros_.push_back({zero_between(f, begin, end, ends_[f]), f, now});
-      } else {
-        signs_[f] = now;
-      }
-      before_[f] = now;
+  const auto take = [&](double t) {
+    std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
+    look_at(stepper, t);
+    rows_.back().time = t;
+    rows_.back().values = values_;
+  };
+  take(from);
+  begun_ = inside_.y;
+  // The kinks are those of coordinates, which a parabola follows over a step.
+  const bool kinks_alone = switches_ + events_.size() == 0;
+  const std::size_t looks = kinks_alone ? 2 : looks_in_a_part * (*parts_)(to - from, begun_, stepper.state().y);
+  for (std::size_t look = 1; look <= looks; ++look) {
+    take(look == looks ? to : from + (to - from) * static_cast<double>(look) / static_cast<double>(looks));
+    for (std::size_t f = 0; f < before_.size(); ++f) {
+      cross(stepper, f, rows_[1], rows_[2]);
+      if (look == 2) cross_there_and_back(stepper, f, 0);
+      if (look >= 2) cross_there_and_back(stepper, f, 1);
     }
-    begin = end;
   }
   std::stable_sort(zeros_.begin(), zeros_.end(), [](const Zero& a, const Zero& b) { return a.time < b.time; });
+  // What nobody notices has passed.
+  const auto waits = [&](std::size_t f) {
+    return std::any_of(zeros_.begin(), zeros_.end(), [f](const Zero& z) { return z.function == f; });
+  };
+  for (std::size_t f = 0; f < signs_.size(); ++f)
+    if (!waits(f)) signs_[f] = before_[f];
   return zeros_;
 }
 

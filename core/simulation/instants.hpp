@@ -3,6 +3,7 @@
 /// where functions that the caller watches pass through zero.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <span>
@@ -12,9 +13,11 @@
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/kinks.hpp"
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/renewal.hpp"
 #include "withy/core/simulation/run_event.hpp"
+#include "withy/core/simulation/step_parts.hpp"
 
 namespace withy {
 
@@ -68,25 +71,31 @@ class Clocks {
   std::vector<double> before_;  ///< states of a load that may switch
 };
 
-/// Watches functions for zeros within accepted steps.
+/// Watches functions for zeros within accepted steps: switching functions of loads, events, and kinks of loads, of which
+/// those count that a step has passed and come back from.
 class ZeroWatch {
  public:
   /// A zero that a function has passed.
   struct Zero {
     double time = 0;           ///< [s]
-    std::size_t function = 0;  ///< switching functions in the loads' order, then the events
+    std::size_t function = 0;  ///< switching functions in the loads' order, then the events, then kinks
     int direction = 0;         ///< +1: from below, −1: from above
   };
   /// Watches the switching functions of the model's loads and `events`, from a state on. Both must outlive the watch.
-  ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start);
+  /// \param end of the run [s]
+  ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start,
+            double end = std::numeric_limits<double>::infinity(), bool kinks = false);
   [[nodiscard]] bool empty() const { return signs_.empty(); }
 
   /// The zeros passed in the stepper's last step, which began at `from` [s], on its dense output, in their order.
   const std::vector<Zero>& find(const Stepper& stepper, double from);
-  /// Says that a zero has been dealt with.
-  void pass(const Zero& zero) { signs_[zero.function] = zero.direction; }
-  /// Whether a zero changes the run: a load switches there, or an event stops it.
-  [[nodiscard]] bool acts(const Zero& zero) const { return zero.function < switches_ || event(zero.function).stops; }
+  /// Says that all zeros that `find` has given have been dealt with.
+  void pass() { signs_ = before_; }
+  /// Whether a zero changes the run: a load switches or has a kink there, or an event stops it.
+  [[nodiscard]] bool acts(const Zero& zero) const {
+    return zero.function < switches_ || is_kink(zero.function) || event(zero.function).stops;
+  }
+  [[nodiscard]] bool is_kink(std::size_t function) const { return function >= switches_ + events_.size(); }
   /// At a state that a step from `before` was made to end at because of one of the zeros `known`: the zeros of others
   /// passed with it. The functions of `known` have passed, whatever sign rounding leaves them here.
   const std::vector<Zero>& land(const State& before, const State& state, std::span<const Zero> known);
@@ -106,6 +115,18 @@ class ZeroWatch {
 
  private:
   void evaluate(double t, std::span<const double> y, std::span<double> values) const;
+  /// Functions at a time within the last step.
+  struct Row {
+    double time = 0;
+    std::vector<double> values;
+  };
+  void look_at(const Stepper& stepper, double t);
+  /// The end of the bracket [a, b] in which a function passes zero, where it has the sign it has at b.
+  [[nodiscard]] double zero_between(const Stepper& stepper, std::size_t f, double a, double b, double value_at_b);
+  /// Takes up the zeros of a function between a row and the next.
+  void cross(const Stepper& stepper, std::size_t f, const Row& begin, const Row& end);
+  /// The same where it has one sign at both, and the parabola through three rows has another in between.
+  void cross_there_and_back(const Stepper& stepper, std::size_t f, std::size_t interval);
   /// Whether a function that has this sign now is to be noticed.
   [[nodiscard]] bool noticed(std::size_t function, int direction) const;
 
@@ -113,14 +134,18 @@ class ZeroWatch {
   std::span<const RunEvent> events_;
   std::size_t switches_ = 0;
   std::vector<LoadSlot> slots_;  ///< of loads with switching functions
+  std::vector<const Kinks*> kinks_;
   std::vector<int> signs_;       ///< −1, 0, +1 at the last accepted state
   std::vector<int> before_;
   std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;
+  std::array<Row, 3> rows_;  ///< those looked at last, in the order of their times
   std::vector<double> landed_;  ///< values at the state that `land` has seen
   std::vector<double> unsure_;  ///< how far from zero these may be of functions that passed there; else below zero
   std::vector<Zero> zeros_;
   State inside_;
+  std::optional<StepParts> parts_;  ///< nothing where nothing is watched
+  std::vector<double> begun_;       ///< y where the last step began
 };
 
 }  // namespace withy

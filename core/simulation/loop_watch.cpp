@@ -1,31 +1,69 @@
 #include "withy/core/simulation/loop_watch.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
+namespace {
+
+/// Of a step, to a four-thousandth of it.
+constexpr std::size_t most_halvings = 12;
+/// In which the rank may turn out to be greater than where the run begins: the very first may be too short to tell.
+constexpr std::size_t first_steps = 16;
+
+}  // namespace
 
 LoopWatch::LoopWatch(const EquationsOfMotion& equations, const State& initial)
     : loops_(dynamic_cast<const ClosedLoops*>(&equations)), work_(loops_ != nullptr ? equations.make_work() : Work(0)) {
   if (loops_ == nullptr) return;
   last_ = initial;
-  for (const LoopCount& count : loops_->counts(initial.y, work_)) rank_ += count.independent;
+  between_.assign(most_halvings, initial);
+  rank_ = rank_at(initial);
 }
 
-std::string LoopWatch::fault(const State& state) {
+std::size_t LoopWatch::rank_at(const State& state) {
+  std::size_t rank = 0;
+  for (const LoopCount& count : loops_->counts(state.y, work_)) rank += count.independent;
+  return rank;
+}
+
+double LoopWatch::kept_until(const Stepper& stepper, const State& before, const State& after, std::size_t halvings) {
+  if (loops_->keeps_rank(before.y, after.y, rank_, work_)) return after.time;
+  if (halvings == 0) return before.time;
+  State& middle = between_[halvings - 1];
+  middle.time = before.time + (after.time - before.time) / 2;
+  stepper.interpolate(middle.time, middle.y);
+  const double first = kept_until(stepper, before, middle, halvings - 1);
+  return first < middle.time ? first : kept_until(stepper, middle, after, halvings - 1);
+}
+
+std::string LoopWatch::fault(const Stepper& stepper) {
   if (loops_ == nullptr) return {};
-  const bool passes = state.time > last_.time && loops_->passes_singularity(last_.y, state.y, rank_, work_);
-  const double before = last_.time;
+  const State& state = stepper.state();
+  if (!(state.time > last_.time)) {
+    last_ = state;
+    return {};
+  }
+  const double before = last_.time, kept = kept_until(stepper, last_, state, most_halvings);
   last_ = state;
-  if (!passes) return {};
-  return "the equations that close the loops lose rank between t = " + brief(before) + " and " + brief(state.time) +
-         " s: there the loops can move on in more than one way, and no equation of motion says which (a singular "
-         "configuration, as where links of a four-bar lie in one line)";
+  if (kept < state.time)
+    return "the equations that close the loops lose rank between t = " + brief(kept) + " and " +
+           brief(std::min(state.time, kept + std::ldexp(state.time - before, -static_cast<int>(most_halvings)))) +
+           " s: there the loops can move on in more than one way, and no equation of motion says which (a singular "
+           "configuration, as where links of a four-bar lie in one line)";
+  if (begun_ < first_steps && ++begun_ > 0 && rank_at(state) > rank_)
+    return "the run begins in a singular configuration of the loops, as where links of a four-bar lie in one line: "
+           "there they can move on in more than one way, and no equation of motion says which";
+  return {};
 }
 
 void LoopWatch::remember(Memory& memory) {
   if (loops_ == nullptr) return;
   memory(last_.time);
   memory(last_.y);
+  memory(begun_);
 }
 
 std::string closing_text(const EquationsOfMotion& equations, const Stepper& stepper) {

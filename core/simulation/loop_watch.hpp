@@ -16,15 +16,22 @@ namespace withy {
 class LoopWatch {
  public:
   LoopWatch(const EquationsOfMotion& equations, const State& initial);
-  /// Why the run cannot go on from this state; empty where it can, and of trees.
-  [[nodiscard]] std::string fault(const State& state);
+  /// Why the run cannot go on after the stepper's last step; empty where it can, and of trees.
+  [[nodiscard]] std::string fault(const Stepper& stepper);
   void remember(Memory& memory);
 
  private:
+  /// Rank between two states of the last step; a way that is too far to tell is halved, so often at most. \returns the
+  /// time up to which it is kept for sure; that of `after` where it is all the way
+  double kept_until(const Stepper& stepper, const State& before, const State& after, std::size_t halvings);
+  [[nodiscard]] std::size_t rank_at(const State& state);
+
   const ClosedLoops* loops_;
   Work work_;
   State last_;
-  std::size_t rank_ = 0;  ///< of the closing equations at the start
+  std::vector<State> between_;  ///< one a halving
+  std::size_t rank_ = 0;        ///< of the closing equations at the start
+  std::size_t begun_ = 0;       ///< steps seen, of the first ones
 };
 
 /// What closing has changed in a run, in a sentence; empty of trees.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "withy/core/simulation/parabola.hpp"
+
 namespace withy {
 namespace {
 
@@ -15,27 +17,13 @@ std::vector<SensorNode> needed(const std::vector<SensorNode>& sensors, const std
   return {sensors.begin(), sensors.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-/// Where the parabola through three points has its extreme, clamped to their span.
-double vertex(const std::array<double, 3>& t, const std::array<double, 3>& x) {
-  const double a = (x[1] - x[0]) / (t[1] - t[0]), b = (x[2] - x[1]) / (t[2] - t[1]);
-  const double bend = (b - a) / (t[2] - t[0]);
-  if (bend == 0) return t[1];
-  return std::clamp((t[0] + t[1]) / 2 - a / (2 * bend), t[0], t[2]);
-}
-
-/// The value of that parabola.
-double along(const std::array<double, 3>& t, const std::array<double, 3>& x, double at) {
-  const double a = (x[1] - x[0]) / (t[1] - t[0]), b = (x[2] - x[1]) / (t[2] - t[1]);
-  return x[0] + a * (at - t[0]) + (b - a) / (t[2] - t[0]) * (at - t[0]) * (at - t[1]);
-}
-
 }  // namespace
 
 double OutputStatistics::rms() const { return span > 0 ? std::sqrt(std::max(0.0, square / span)) : std::abs(least); }
 
 StatisticsWatch::StatisticsWatch(const std::vector<SensorNode>& sensors, const std::vector<std::string>& watched,
-                                 const EquationsOfMotion& equations, std::vector<double> jumps)
-    : reader_(needed(sensors, watched), equations), jumps_(std::move(jumps)) {
+                                 const EquationsOfMotion& equations, std::vector<double> jumps, StepParts parts)
+    : reader_(needed(sensors, watched), equations), jumps_(std::move(jumps)), parts_(std::move(parts)) {
   std::size_t column = 0;
   for (const SensorNode& node : needed(sensors, watched)) {
     const bool asked = std::find(watched.begin(), watched.end(), node.name) != watched.end();
@@ -83,31 +71,44 @@ void StatisticsWatch::begin_at(const State& state) {
 }
 
 void StatisticsWatch::observe(const Stepper& stepper) {
-  const double to = stepper.state().time, h = to - from_;
+  const double from = from_, h = stepper.state().time - from;
   if (!(h > 0)) {
     begin_at(stepper.state());
     return;
   }
-  for (std::size_t k = 1; k + 1 < places; ++k) {
-    between_.time = from_ + h * static_cast<double>(k) / (places - 1);
+  stepper.interpolate(from, between_.y);
+  const std::size_t parts = parts_(h, between_.y, stepper.state().y);
+  for (std::size_t k = 1; k < parts; ++k)
+    observe_part(stepper, from + h * static_cast<double>(k) / static_cast<double>(parts));
+  observe_part(stepper, stepper.state().time);
+}
+
+void StatisticsWatch::observe_part(const Stepper& stepper, double to) {
+  const double h = to - from_;
+  for (std::size_t k = 1; k < places; ++k) {
+    const bool end = k + 1 == places;
+    if (end && to == stepper.state().time) {
+      read_end(stepper.state(), within_.back());
+      break;
+    }
+    between_.time = end ? to : from_ + h * static_cast<double>(k) / (places - 1);
     stepper.interpolate(between_.time, between_.y);
     read(between_, within_[k]);
   }
-  read_end(stepper.state(), within_.back());
   for (std::size_t k = 0; k < places; ++k) note(from_ + h * static_cast<double>(k) / (places - 1), within_[k]);
   for (std::size_t i = 0; i < results_.size(); ++i) {
     const bool whole =
         std::all_of(within_.begin(), within_.end(), [i](const auto& at) { return std::isfinite(at[i]); });
     if (!whole) continue;
-    add_step(i, h);
-    refine(stepper, i, 1);
-    refine(stepper, i, -1);
+    add_part(i, h);
+    refine(stepper, i, h, 1);
+    refine(stepper, i, h, -1);
   }
   within_.front() = within_.back();
   from_ = to;
 }
 
-void StatisticsWatch::add_step(std::size_t result, double h) {
+void StatisticsWatch::add_part(std::size_t result, double h) {
   constexpr std::array<double, places> boole{7 / 90.0, 32 / 90.0, 12 / 90.0, 32 / 90.0, 7 / 90.0};
   OutputStatistics& r = results_[result];
   for (std::size_t k = 0; k < places; ++k) {
@@ -119,16 +120,16 @@ void StatisticsWatch::add_step(std::size_t result, double h) {
 }
 
 /// Looks for a greatest (sign 1) or least (−1) value between the places.
-void StatisticsWatch::refine(const Stepper& stepper, std::size_t result, double sign) {
+void StatisticsWatch::refine(const Stepper& stepper, std::size_t result, double h, double sign) {
   const OutputStatistics& r = results_[result];
-  const double h = (stepper.state().time - from_) / (places - 1);
+  const double apart = h / (places - 1);
   std::size_t top = 0;
   for (std::size_t k = 1; k < places; ++k)
     if (sign * within_[k][result] > sign * within_[top][result]) top = k;
   const std::size_t middle = std::clamp<std::size_t>(top, 1, places - 2);
   std::array<double, 3> t{}, x{};
   for (std::size_t k = 0; k < 3; ++k) {
-    t[k] = from_ + h * static_cast<double>(middle + k - 1);
+    t[k] = from_ + apart * static_cast<double>(middle + k - 1);
     x[k] = within_[middle + k - 1][result];
   }
   for (int look = 0; look < 2; ++look) {

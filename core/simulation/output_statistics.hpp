@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "withy/core/simulation/sensor_reader.hpp"
+#include "withy/core/simulation/step_parts.hpp"
 #include "withy/core/simulation/step_watch.hpp"
 
 namespace withy {
@@ -24,16 +25,16 @@ struct OutputStatistics {
   [[nodiscard]] double rms() const;
 };
 
-/// Reads outputs at five places of each accepted step, on its dense output: integrals are Boole's, and where a parabola
-/// through three places promises an extreme beyond those known the output is read there, twice. Depends on no output
-/// interval. Of one thread.
+/// Reads outputs at five places of each part of an accepted step (StepParts), on its dense output: integrals are
+/// Boole's, and where a parabola through three places promises an extreme beyond those known the output is read there,
+/// twice. Depends on no output interval. Of one thread.
 class StatisticsWatch final : public StepWatch {
  public:
   /// \param sensors all of the scene, bound to the model of the equations, which must outlive it
   /// \param watched names of those whose statistics are asked for
   /// \param jumps times [s] at which loads or motions of the model jump, increasing, as `discontinuities` has them
   StatisticsWatch(const std::vector<SensorNode>& sensors, const std::vector<std::string>& watched,
-                  const EquationsOfMotion& equations, std::vector<double> jumps);
+                  const EquationsOfMotion& equations, std::vector<double> jumps, StepParts parts);
   void begin_at(const State& state) override;
   void observe(const Stepper& stepper) override;
   void remember(Memory& memory) override;
@@ -47,8 +48,10 @@ class StatisticsWatch final : public StepWatch {
   /// The same at the end of a step, which no jump there belongs to.
   void read_end(const State& state, std::vector<double>& values);
   void note(double t, const std::vector<double>& values);
-  void add_step(std::size_t result, double h);
-  void refine(const Stepper& stepper, std::size_t result, double sign);
+  /// The part from from_ to a time, which becomes from_.
+  void observe_part(const Stepper& stepper, double to);
+  void add_part(std::size_t result, double h);
+  void refine(const Stepper& stepper, std::size_t result, double h, double sign);
 
   SensorReader reader_;
   std::vector<double> jumps_;         ///< times at which loads or motions jump; steps end there
@@ -56,8 +59,9 @@ class StatisticsWatch final : public StepWatch {
   std::vector<OutputStatistics> results_;
   std::vector<double> all_, now_;
   std::array<std::vector<double>, places> within_;  ///< the first is that of where the step began
-  double from_ = 0;                                 ///< [s], where the next step begins
+  double from_ = 0;                                 ///< [s], where the next part begins
   State between_;
+  StepParts parts_;
 };
 
 }  // namespace withy

@@ -155,7 +155,7 @@ bool Session::output(const State& /*state*/) { return true; }
 bool Session::after_step(const Stepper& stepper, bool /*outputs*/) {
   monitor_.observe(stepper);
   monitor_.audit_mass_matrix(stepper.state(), stepper.statistics().determinant_sign);
-  if (const std::string fault = loops_.fault(stepper.state()); !fault.empty()) {
+  if (const std::string fault = loops_.fault(stepper); !fault.empty()) {
     stop_ = {RunStatus::singular, fault, false};
   } else if (monitor_.sign_change()) {
     stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};

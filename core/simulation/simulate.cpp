@@ -57,7 +57,8 @@ class Run final : public SteppingObserver {
   }
 
   Stop to_end() {
-    const SteppingEnd end = loop_.run(*this);
+    SteppingEnd end = loop_.run(*this);
+    while (options_.past_stops && end.cause == SteppingEnd::Cause::event) end = loop_.run(*this);
     if (end.cause == SteppingEnd::Cause::stopped) return stop_;
     return stop_of(end, model_, equations_, loop_.state(), loop_.stepper().statistics());
   }
@@ -120,7 +121,7 @@ class Run final : public SteppingObserver {
     if (validity_)
       validity_->observe(state, loop_.step_evaluations(), monitor_.trusted().time, seen ? &monitor_.seen() : nullptr);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
-    if (const std::string fault = loops_.fault(state); !fault.empty()) {
+    if (const std::string fault = loops_.fault(stepper); !fault.empty()) {
       stop_ = {RunStatus::singular, fault, false};
     } else if (monitor_.sign_change()) {
       stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
@@ -134,7 +135,7 @@ class Run final : public SteppingObserver {
     const auto of_that_name = [&](const RunEvent& e) { return e.name == event.name; };
     const auto watched = actions_.watched();
     const auto stated = std::find_if(watched.begin(), watched.end(), of_that_name);
-    if (stated != watched.end() && stated->stops) stopped_by_.push_back(event.name);
+    if (stated != watched.end() && stated->stops && !options_.past_stops) stopped_by_.push_back(event.name);
   }
   void acted(const State& before, const State& after) override { monitor_.pass_event(before, after); }
   void switched() override { ++summary_.switchings; }
@@ -303,6 +304,7 @@ std::string message_of_completed(const Run& run, const Model& model, const RunSu
   if (const std::string missed = note_on_missed_events(model, summary.final); !missed.empty()) add(missed);
   if (!summary.suspected_jumps.empty()) add(note_on_jumps(model, summary.suspected_jumps));
   for (const std::string& remark : run.stepper().remarks()) add("The integrator: " + remark + ".");
+  if (const std::string given = note_on_given_steps(run.stepper(), summary.energy_scale); !given.empty()) add(given);
   if (const std::string closing = closing_text(run.equations(), run.stepper()); !closing.empty()) add(closing);
   return text;
 }
@@ -335,6 +337,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   const double mean_step =
       (summary.reached - initial.time) / static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));
   if (stop.status == RunStatus::completed) {
+    summary.ended_by_event = !run.stopped_by().empty() && summary.reached < options.end;
     summary.message = message_of_completed(run, model, summary);
     const std::string imbalanced = run.monitor().greatest_speed() > options.least_speed
                                        ? imbalance(summary, options, integrator, mean_step)

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/given_steps.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/simulation/same_instant.hpp"
 
@@ -13,14 +14,22 @@ namespace withy {
 
 using Cause = SteppingEnd::Cause;
 
+namespace {
+
+bool has_given_steps(const Stepper& stepper) { return dynamic_cast<const GivenSteps*>(&stepper) != nullptr; }
+
+}  // namespace
+
 Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::unique_ptr<Stepper> stepper,
                    const SteppingOptions& options)
     : stepper_(std::move(stepper)),
       clocks_(model, equations),
       jumps_(discontinuities(model)),
-      zeros_(model, options.events, stepper_->state()),
+      zeros_(model, options.events, stepper_->state(), options.end, !has_given_steps(*stepper_)),
       actions_(options.actions),
       times_(stepper_->state().time, options.output, options.end),
+      courses_(model, stepper_->state().time,
+               has_given_steps(*stepper_) ? stepper_->state().time : options.end),
       end_(options.end),
       sample_(stepper_->state()) {
   if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr &&
@@ -161,7 +170,7 @@ bool Stepping::to(double limit, bool watching) {
       if (!zeros_.empty()) before_ = state();
     }
     const std::size_t made = stepper_->statistics().evaluations;
-    ended_.step = stepper_->step(limit);
+    ended_.step = stepper_->step(std::min(limit, courses_.latest_end(state().time)));
     step_evaluations_ += stepper_->statistics().evaluations - made;
     check_arithmetic();
     if (ended_.step.outcome != StepResult::Outcome::ok) return sound(state()) && end(Cause::failed);
@@ -214,10 +223,8 @@ bool Stepping::act_on_zeros() {
   const auto acts = [&](const Zero& z) { return changes_the_run(z); };
   const auto first = std::find_if(handled_.begin(), handled_.end(), acts);
   if (first == handled_.end()) {
-    for (const Zero& zero : handled_) {
-      note(zero);
-      zeros_.pass(zero);
-    }
+    for (const Zero& zero : handled_) note(zero);
+    zeros_.pass();
     return true;
   }
   const double apart = coincidence(*first), at = first->time;
@@ -251,6 +258,8 @@ bool Stepping::cut_at(double time, std::size_t noted) {
     zero.time = std::min(zero.time, sample_.time);
     if (const auto load = zeros_.switching(zero.function)) {
       if (clocks_.renew(sample_, load->first, {load->second, zero.direction})) observer_->switched();
+    } else if (zeros_.is_kink(zero.function)) {
+      continue;  // the next step begins at it
     } else if (actions_ != nullptr && actions_->acts(zeros_.index(zero))) {
       happened_.push_back(zeros_.index(zero));
     } else {

@@ -15,6 +15,7 @@
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_event.hpp"
 #include "withy/core/simulation/run_times.hpp"
+#include "withy/core/simulation/time_courses.hpp"
 
 namespace withy {
 
@@ -124,6 +125,7 @@ class Stepping {
   ZeroWatch zeros_;
   EventActions* actions_;
   OutputTimes times_;
+  TimeCourses courses_;  ///< nothing of a stepper whose steps are given
   double end_;
   State sample_;
   State before_;    ///< where the last step began; kept only where zeros are watched

@@ -5,6 +5,7 @@
 
 #include "withy/core/kinematics/signals.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/loads/control/bound_control.hpp"
 
@@ -15,18 +16,21 @@ std::unique_ptr<BoundLoad> make_continuous(const Model& model, const Terms& term
                                            const std::shared_ptr<const ControlBlock>& block);
 
 /// In continuous time: the block's states are the load's.
-class ContinuousControl : public BoundControl, public ContinuousPart {
+class ContinuousControl : public BoundControl, public ContinuousPart, public CourseOfTime {
  public:
   ContinuousControl(const Model& model, const Terms& terms, ControlEnds ends, std::shared_ptr<const ControlBlock> block)
       : BoundControl(model, std::move(ends), std::move(block)),
         signals_(model, terms, names()),
-        states_(this->block().states()) {
+        states_(this->block().states()),
+        course_(dynamic_cast<const CourseOfTime*>(&this->block())) {
     for (std::size_t i = 0; i < signals_.size(); ++i) along_.push_back(speed_along(model, signals_.element(i)));
     for (std::size_t i = 0; i < this->block().inputs(); ++i) commands_at_once_ |= this->block().feeds_through(i);
     for (const InputPlace& place : places()) acts_on_speeds_ |= place.speed >= 0;
     follow_accelerations();
   }
 
+  std::size_t courses() const override { return course_ == nullptr ? 0 : course_->courses(); }
+  void course(double t, std::span<double> values) const noexcept override { course_->course(t, values); }
   std::size_t scratch() const override { return block().inputs() + block().outputs() + signals_.scratch(); }
   bool needs_accelerations() const override { return follows_accelerations_; }
 
@@ -143,6 +147,7 @@ class ContinuousControl : public BoundControl, public ContinuousPart {
 
   Signals signals_;
   std::vector<std::string> states_;
+  const CourseOfTime* course_;  ///< of the block; null: none
   std::vector<int> along_;              ///< one a signal
   bool follows_accelerations_ = false;  ///< what it commands does, at once
   bool commands_at_once_ = false;       ///< what it commands depends on what is measured then, not on states alone

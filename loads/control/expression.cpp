@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <array>
 
+#include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/formula.hpp"
 #include "withy/loads/control/control_load.hpp"
 
 namespace withy {
 namespace {
 
-class FormulaBlock final : public ControlBlock {
+class FormulaBlock final : public ControlBlock, public CourseOfTime {
  public:
   explicit FormulaBlock(Formula formula) : formula_(std::move(formula)) {
     for (const std::string& name : formula_.names())
@@ -25,6 +26,13 @@ class FormulaBlock final : public ControlBlock {
     std::size_t next = 0;
     for (std::size_t i = 0; i < formula_.names().size(); ++i) named[i] = formula_.names()[i] == "t" ? t : w[next++];
     v[0] = formula_(named);
+  }
+  std::size_t courses() const override { return signals_.size() < formula_.names().size() ? 1 : 0; }
+  /// Of signals that are one: what they are multiplied with is seen as well.
+  void course(double t, std::span<double> values) const noexcept override {
+    std::array<double, Formula::most_names> ones{};
+    ones.fill(1);
+    output(t, ones, {}, values);
   }
 
  private:

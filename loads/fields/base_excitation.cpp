@@ -34,6 +34,11 @@ struct BaseExcitation {
     field.a = Vector3(-std::visit([t](const auto& A) { return A(t); }, law)).template cast<S>();
     return field;
   }
+  [[nodiscard]] std::size_t courses() const { return std::holds_alternative<FormulaLaw>(law) ? 3 : 0; }
+  void course(double t, std::span<double> values) const {
+    const Vector3 A = std::visit([t](const auto& given) { return Vector3(given(t)); }, law);
+    std::copy(A.begin(), A.end(), values.begin());
+  }
   [[nodiscard]] std::vector<double> discontinuities() const {
     const auto* given = std::get_if<TimeLaw<Vector3>>(&law);
     return given == nullptr ? std::vector<double>{} : given->discontinuities();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "withy/core/deformation/mass_points.hpp"
+#include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/spatial/jet.hpp"
 #include "withy/core/spatial/pose.hpp"
@@ -30,12 +31,13 @@ struct FieldAt {
   V3<S> curvature = V3<S>::Zero();    ///< ½ Σ_jk S_jk ∂²a/∂r_j∂r_k of the second moment S that was asked for
 };
 
-/// `Law` has `template <class S> FieldAt<S> at(double t, r, v, S) const`, and discontinuities() and end() as BoundLoad.
+/// `Law` has `template <class S> FieldAt<S> at(double t, r, v, S) const`, and discontinuities() and end() as BoundLoad;
+/// courses() and course() as CourseOfTime where it follows a formula of the time.
 /// A point's own mass feels a; what turns about it, with S = Σ m ρ ρᵀ, feels
 ///   f = ½ S:∂²a/∂r²,   moment_i = ε_ijk (A S)_kj,   A = ∂a/∂r + ∂a/∂v ω̂,
 /// for ρ̇ = ω × ρ: what the field, expanded about the point, does to second moments.
 template <class Law>
-class BoundField final : public FieldLoad {
+class BoundField final : public FieldLoad, public CourseOfTime {
  public:
   BoundField(const Model& model, Law law) : FieldLoad(model), law_(std::move(law)) {}
 
@@ -66,6 +68,13 @@ class BoundField final : public FieldLoad {
   }
   std::vector<double> discontinuities() const override { return law_.discontinuities(); }
   double end() const override { return law_.end(); }
+  std::size_t courses() const override {
+    if constexpr (requires { law_.courses(); }) return law_.courses();
+    return 0;
+  }
+  void course(double t, std::span<double> values) const noexcept override {
+    if constexpr (requires { law_.courses(); }) law_.course(t, values);
+  }
   std::unique_ptr<BoundLoad> rebound(const Model& model, const Terms& /*terms*/) const override {
     if (is_of(model)) return nullptr;
     return std::make_unique<BoundField>(model, law_);

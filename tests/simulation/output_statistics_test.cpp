@@ -30,7 +30,8 @@ loads:
 }
 
 std::vector<OutputStatistics> statistics_of(const test::LoadedScene& s, const RunOptions& options = {}) {
-  StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations, discontinuities(*s.scene.model));
+  StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations, discontinuities(*s.scene.model),
+                        StepParts(*s.scene.model, s.scene.initial.time, *s.scene.end));
   RunOptions all = options;
   all.end = end_of_run(s.scene);
   all.output = s.scene.output;
@@ -76,7 +77,8 @@ TEST(OutputStatistics, DoNotDependOnTheRowsAndChangeNothing) {
 TEST(OutputStatistics, OfOneThatIsNoNumberLeaveTheOthersAsTheyAre) {
   const test::LoadedScene s(swinging_block(), {"outputs.half={type: expression, value: sqrt(place.position)}",
                                                "outputs.never={type: expression, value: sqrt(place.position - 5)}"});
-  StatisticsWatch watch(s.scene.outputs, {"place", "half", "never"}, *s.equations, discontinuities(*s.scene.model));
+  StatisticsWatch watch(s.scene.outputs, {"place", "half", "never"}, *s.equations, discontinuities(*s.scene.model),
+                        StepParts(*s.scene.model, s.scene.initial.time, *s.scene.end));
   RunOptions options;
   options.end = end_of_run(s.scene);
   options.output = s.scene.output;
@@ -105,7 +107,8 @@ TEST(OutputStatistics, SeeBothSidesOfJumps) {
   double greatest = 0;
   SensorReader reader(s.scene.outputs, *s.equations);
   std::vector<double> row(reader.columns().size());
-  StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations, discontinuities(*s.scene.model));
+  StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations, discontinuities(*s.scene.model),
+                        StepParts(*s.scene.model, s.scene.initial.time, *s.scene.end));
   RunOptions options;
   options.end = 2;
   options.output = 0.05;
@@ -152,7 +155,8 @@ outputs:
 loads:
   push: {type: hinge-effort, hinge: slide, law: steps, table: [[0, 1], [0.35, 5], [0.9, -3]]}
 )");
-  StatisticsWatch watch(s.scene.outputs, {"drive", "power"}, *s.equations, discontinuities(*s.scene.model));
+  StatisticsWatch watch(s.scene.outputs, {"drive", "power"}, *s.equations, discontinuities(*s.scene.model),
+                        StepParts(*s.scene.model, s.scene.initial.time, *s.scene.end));
   RunOptions options;
   options.end = end_of_run(s.scene);
   options.output = s.scene.output;

@@ -1,0 +1,33 @@
+#include "withy/core/simulation/step_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "withy/core/model/hinge_rates.hpp"
+
+namespace withy {
+namespace {
+
+constexpr double parts_of_a_run = 256, radians = 0.5;
+/// Of one step: what turns faster is watched by steps of its own.
+constexpr double most_parts = 4096;
+
+}  // namespace
+
+StepParts::StepParts(const Model& model, double start, double end) : longest_((end - start) / parts_of_a_run) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
+    const std::size_t first = model.layout().positions + model.layout().hinges[h].speed;
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      if (rates[i].angular) turning_.push_back(first + i);
+  }
+}
+
+std::size_t StepParts::operator()(double length, std::span<const double> before, std::span<const double> after) const {
+  double fastest = 0;
+  for (const std::size_t i : turning_) fastest = std::max({fastest, std::abs(before[i]), std::abs(after[i])});
+  const double parts = std::max(length * fastest / radians, longest_ > 0 ? length / longest_ : 0.0);
+  return static_cast<std::size_t>(std::clamp(std::ceil(parts), 1.0, most_parts));
+}
+
+}  // namespace withy

@@ -1,0 +1,31 @@
+/// \file
+/// How closely a step is looked into.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// Divides steps into equal parts for what looks into them. A step is as long as the motion allows, which says nothing
+/// of what is watched: a rotor that turns freely has the same rate for ever, and its coordinate is followed exactly
+/// over a hundred turns, where a place on it goes to and fro. No hinge turns further than half a radian in a part, by
+/// its rates at both ends, and a run has 256 parts or more.
+class StepParts {
+ public:
+  /// \param start, end of the run [s]; an infinite end: of unknown length
+  StepParts(const Model& model, double start, double end);
+  /// \param length of the step [s]
+  /// \param before, after the states y at its ends
+  [[nodiscard]] std::size_t operator()(double length, std::span<const double> before,
+                                       std::span<const double> after) const;
+
+ private:
+  std::vector<std::size_t> turning_;  ///< elements of y: rates that turn something
+  double longest_ = 0;                ///< part [s]
+};
+
+}  // namespace withy

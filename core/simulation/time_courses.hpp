@@ -1,0 +1,29 @@
+/// \file
+/// How long steps may be where loads and motions follow the time by formulas.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// Looks at the formulas at 4096 intervals of a run. Where one of them goes through its range within a few of these,
+/// a step is no longer than it takes for that: an estimate of an error sees what its stages meet. What lasts less than
+/// an interval may still be passed over.
+class TimeCourses {
+ public:
+  /// \param start, end of the run [s]; without an end nothing is known
+  TimeCourses(const Model& model, double start, double end);
+  /// The latest end of a step from t [s], later than t; infinite where nothing limits it.
+  [[nodiscard]] double latest_end(double t) const;
+
+ private:
+  static constexpr std::size_t intervals = 4096;
+  double start_ = 0, interval_ = 0;  ///< [s]
+  std::vector<double> longest_;      ///< of steps in each interval [s]; infinite: any; empty where none is limited
+  std::vector<std::size_t> limited_;  ///< the first interval from each on that is limited; past the last: none
+};
+
+}  // namespace withy
