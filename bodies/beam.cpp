@@ -15,13 +15,15 @@ namespace {
 /// Reads a beam's parameters; what is wrong is reported, and nothing made then.
 class Reader {
  public:
-  Reader(const Value& parameters, const MakeContext& context) : p_(parameters), context_(context) {}
+  Reader(const Value& parameters, const MakeContext& context, std::vector<std::string> remarks = {})
+      : p_(parameters), context_(context), remarks_(std::move(remarks)) {}
 
   std::unique_ptr<Body> make() {
     const std::optional<BodyDamping> damping = BodyDamping::read(p_, context_.diagnostics);
     good_ = damping.has_value();
     BeamMaterial material{
         p_.number_at("length"), profile(p_.at("mass_per_length")), {}, damping.value_or(BodyDamping())};
+    material.remarks = remarks_;
     good_ = good_ && masses_are_held(material.mass_per_length.mean(), material.length);
     using enum BeamData::Strain;
     add("bending_y", Vector3::UnitZ(), bending, "rotary_inertia", material);
@@ -145,6 +147,7 @@ class Reader {
 
   const Value& p_;
   const MakeContext& context_;
+  std::vector<std::string> remarks_;
   std::vector<BeamStrain> strains_;
   bool good_ = true;
 };
@@ -198,11 +201,46 @@ const std::vector<ParameterSpec>& parameters() {
   return all;
 }
 
+/// The whole beam in vibration modes of its own sections: of one strain the lowest is exact, where strains share in
+/// modes as twist and shear make them do, six of each find it to a small part of what damping is known to. Null where
+/// they cannot be made.
+std::unique_ptr<Body> in_vibration_modes(const Value& p, const MakeContext& context) {
+  constexpr double functions = 6;
+  Value whole = p;
+  whole.set("segments", Value(1.0, p.place()));
+  for (const char* strain : {"bending_y", "bending_z", "torsion", "extension", "shear_y", "shear_z"}) {
+    const Value* given = p.find(strain);
+    if (given == nullptr || given->count_at("modes") == 0) continue;
+    Value vibrating = *given;
+    vibrating.set("modes", Value(functions, given->place()));
+    vibrating.set("family", Value::map({{"name", Value(std::string("vibration-modes"), given->place())},
+                                        {"tip_mass", Value(0.0)},
+                                        {"tip_inertia", Value(0.0)},
+                                        {"tip_offset", Value(0.0)},
+                                        {"static", Value(0.0)}},
+                                       given->place()));
+    whole.set(strain, std::move(vibrating));
+  }
+  Diagnostics told;  // what is wrong with the beam itself is told of the one that the scene asks for
+  return Reader(whole, {context.registry, told, context.directory}).make();
+}
+
 std::unique_ptr<Body> make_beam(const Value& p, const MakeContext& context) {
-  auto whole = Reader(p, context).make();
+  const Value* segments = p.find("segments");
+  const bool damped =
+      (p.number_at("damping_ratio") != 0 || p.has("damping")) && segments != nullptr && segments->number() > 1;
+  const std::unique_ptr<Body> vibrating = damped ? in_vibration_modes(p, context) : nullptr;
+  std::vector<std::string> remarks;
+  if (damped && vibrating == nullptr)
+    remarks.emplace_back(
+        "segments are damped by the lowest frequency of the whole in its own functions, which may be off: its "
+        "vibration "
+        "modes cannot be made");
+  auto whole = Reader(p, context, std::move(remarks)).make();
   if (whole == nullptr) return nullptr;
-  return in_segments(std::move(whole), p, parameters(),
-                     [&](const Value& segment) { return Reader(segment, context).make(); });
+  return in_segments(
+      std::move(whole), p, parameters(), [&](const Value& segment) { return Reader(segment, context).make(); },
+      vibrating.get());
 }
 
 }  // namespace

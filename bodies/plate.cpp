@@ -80,6 +80,8 @@ class Plate final : public Body {
     const auto place = place_of(*text);
     return place ? std::optional(expansion(place->first, place->second)) : std::nullopt;
   }
+  /// The middle of the edge rests while the plate twists, and the plate may bend across.
+  std::vector<std::string> measured_beside() const override { return {"left", "right"}; }
   std::string stations() const override {
     return fmt::format(
         "root, tip, left and right (the corners at the tip), a coordinate x of the middle line from 0 to {} m, or a "

@@ -63,11 +63,12 @@ class PlanBuilder {
     }
     std::optional<SceneValues> base = read_scene();
     if (base) plan_.sources = try_values(*base, trials_, plan_.file, registry_, problems_);
-    if (!problems_.none()) return std::move(plan_);
-    plan_.base = std::make_shared<study::Prepared>(study::prepare(std::move(*base), registry_));
+    const bool good = problems_.none();
+    if (base) plan_.base = prepared_base(std::move(*base), registry_, problems_);
+    if (plan_.base == nullptr) return std::move(plan_);
     check_derived(plan_, registry_, problems_);
     check_kept();
-    plan_.fingerprint = fingerprint();
+    if (good) plan_.fingerprint = fingerprint();
     return std::move(plan_);
   }
 
@@ -246,7 +247,9 @@ class PlanBuilder {
     }
     if (std::max(sobol, plan_.axes.size() * (plan_.design == Design::saltelli ? 2 : 0)) > most_sobol_dimensions)
       reader_.key_error("/vary", fmt::format("a Sobol sequence has at most {} dimensions", most_sobol_dimensions));
-    if (find("cases") != nullptr && (!drawn || plan_.design == Design::one_at_a_time))
+    // An axis that is reported may have been drawn.
+    const bool all_read = find("vary") != nullptr && find("vary")->members().size() == plan_.axes.size();
+    if (find("cases") != nullptr && all_read && (!drawn || plan_.design == Design::one_at_a_time))
       reader_.key_error("/cases", "nothing is drawn: leave it out");
     double all = static_cast<double>(plan_.cases) * static_cast<double>(plan_.axes.size() + 2);
     for (const std::size_t n : plan_.grids) all *= static_cast<double>(n);
@@ -261,7 +264,7 @@ class PlanBuilder {
     for (const auto& [given, names] :
          {std::pair(keep->find("final"), &plan_.final), std::pair(keep->find("peak"), &plan_.peak),
           std::pair(history, &plan_.history.of)})
-      for (std::size_t i = 0; i < names->size(); ++i)
+      for (std::size_t i = 0; i < names->size() && given->items().size() == names->size(); ++i)
         if (const std::string why = kept_problem(*plan_.base, (*names)[i], names == &plan_.final); !why.empty())
           reader_.error(given->items()[i].place(), why);
     if (problems_.none() && !plan_.history.of.empty()) make_times();

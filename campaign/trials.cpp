@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "withy/study/input_error.hpp"
+
 namespace withy::campaign {
 namespace {
 
@@ -69,6 +71,17 @@ SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trial
     make(values, registry, problems, sources);
   }
   return sources;
+}
+
+std::shared_ptr<study::Prepared> prepared_base(SceneValues base, Registry& registry, const Problems& problems) {
+  try {
+    return std::make_shared<study::Prepared>(study::prepare(std::move(base), registry));
+  } catch (const SceneError&) {
+    if (problems.none()) throw;
+  } catch (const study::InputError&) {
+    if (problems.none()) throw;
+  }
+  return nullptr;
 }
 
 }  // namespace withy::campaign

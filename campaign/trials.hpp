@@ -2,10 +2,12 @@
 /// Tries the values of a plan in its scene, so that what is wrong is known before the first case runs.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "withy/campaign/plan.hpp"
+#include "withy/study/prepared.hpp"
 
 namespace withy::campaign {
 
@@ -41,5 +43,9 @@ std::string origin_of(const std::string& file, const Place& place);
 /// \returns what all of these scenes were made from
 SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trials, const std::string& plan,
                         Registry& registry, Problems& problems);
+
+/// The scene without what varies: names are looked up in it, whatever else is wrong with the plan. Null where it cannot
+/// be and something is said already, which may be that. \throws SceneError, InputError where nothing is said yet
+std::shared_ptr<study::Prepared> prepared_base(SceneValues base, Registry& registry, const Problems& problems);
 
 }  // namespace withy::campaign

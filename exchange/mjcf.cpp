@@ -26,7 +26,7 @@ class MjcfReader {
     tree_.gravity_remark = "of <option>, or MuJoCo's default";
     for (const Element& e : mujoco_.children) {
       if (e.name == "compiler") compiler(e);
-      if (e.name == "default") defaults_.add(e);
+      if (e.name == "default") defaults_.add_global(e, tree_.remarks);
       if (e.name == "option") option(e);
     }
     refuse_includes(mujoco_);

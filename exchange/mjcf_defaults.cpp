@@ -16,6 +16,9 @@ namespace {
 /// The forms of an orientation beside `quat`: they are one attribute, of which the last one given counts.
 constexpr std::array<std::string_view, 4> turns = {"axisangle", "euler", "xyaxes", "zaxis"};
 
+/// Of elements without a class.
+const std::string main_class = "main";
+
 bool is_turn(std::string_view key) { return std::find(turns.begin(), turns.end(), key) != turns.end(); }
 
 /// Whether an element says itself what a default would.
@@ -34,9 +37,17 @@ void check_orientation(const Element& element, Diagnostics& diagnostics) {
     diagnostics.error(element.place, fmt::format("got the orientations {}; need one of them", listed(given)));
 }
 
-void MjcfDefaults::add(const Element& element, const std::string& around) {
+void MjcfDefaults::add_global(const Element& element, std::vector<std::string>& remarks) {
   const std::string* called = element.find("class");
-  const std::string name = called != nullptr ? *called : "main";
+  if (called != nullptr && *called != "main" && global_.insert(*called).second)
+    remarks.push_back(fmt::format(
+        "<default class={}> on line {} stands at the top level: it is taken for the default of all elements "
+        "without a class, as MuJoCo does up to 3.1.6; later versions refuse it",
+        in_quotes(*called), element.place.line));
+  add(element, main_class, {});
+}
+
+void MjcfDefaults::add(const Element& element, const std::string& name, const std::string& around) {
   auto& mine = classes_[name];
   if (!around.empty()) mine = classes_[around];
   for (const Element& e : element.children) {
@@ -45,18 +56,22 @@ void MjcfDefaults::add(const Element& element, const std::string& around) {
     std::erase_if(all, [&](const auto& one) { return is_turn(one.first) && says(e, one.first); });
     for (const auto& [key, value] : e.attributes) all[key] = value;
   }
-  for (const Element& e : element.children)
-    if (e.name == "default") add(e, name);
+  for (const Element& e : element.children) {
+    if (e.name != "default") continue;
+    const std::string* called = e.find("class");
+    add(e, called != nullptr ? *called : main_class, name);
+  }
 }
 
 Element MjcfDefaults::completed(const Element& element, const std::string& around, Diagnostics& diagnostics) const {
   const std::string* own = element.find("class");
-  const std::string name = own != nullptr ? *own : around.empty() ? "main" : around;
+  const std::string said = own != nullptr ? *own : around.empty() ? main_class : around;
+  const std::string& name = global_.contains(said) ? main_class : said;
   check_orientation(element, diagnostics);
   Element whole{element.name, element.attributes, {}, element.place};
   const auto found = classes_.find(name);
   if (found == classes_.end()) {
-    if (name != "main") diagnostics.error(element.place, "there is no default class " + in_quotes(name));
+    if (name != main_class) diagnostics.error(element.place, "there is no default class " + in_quotes(name));
     return whole;
   }
   const auto of_element = found->second.find(element.name);

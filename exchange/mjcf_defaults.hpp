@@ -3,7 +3,9 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "attributes.hpp"
 #include "xml.hpp"
@@ -14,14 +16,18 @@ namespace withy::exchange {
 /// zaxis the innermost counts alone, and before any `quat`, also one further inside, as in MuJoCo.
 class MjcfDefaults {
  public:
-  /// \param element <default>, with those inside
-  void add(const Element& element, const std::string& around = {});
+  /// \param element <default> of the top level, with those inside. Whatever class it names is that of all elements
+  ///   without one: MuJoCo takes it so up to 3.1.6, and refuses it since
+  void add_global(const Element& element, std::vector<std::string>& remarks);
   /// The element with the attributes that its class gives it. \param around the class of `childclass`, or empty
   [[nodiscard]] Element completed(const Element& element, const std::string& around, Diagnostics& diagnostics) const;
 
  private:
   using OfElement = std::map<std::string, std::string>;
+  void add(const Element& element, const std::string& name, const std::string& around);
+
   std::map<std::string, std::map<std::string, OfElement>> classes_;
+  std::set<std::string> global_;  ///< other names of the class `main`
 };
 
 /// Reports an element that gives its orientation in several forms, before defaults complete it.

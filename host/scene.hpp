@@ -82,7 +82,8 @@ class Scene {
   /// Studies as JSON text, in the form that the program's `--json` has.
   /// In all of them `outputs` names what errors are measured on, outputs that the scene does not define too
   /// (`"link1.tip"`, `"shoulder.effort"`); empty: the usual ones.
-  /// Runs in several formulations and the distances of each from the reference.
+  /// Runs in several formulations and the distances of each from the reference. \param formulations empty: of the usual
+  /// ones those that can treat the scene; `left_out` has the others
   [[nodiscard]] std::string compare(const std::vector<std::string>& formulations, const std::string& reference,
                                     const Follow& follow = {}, const std::vector<std::string>& outputs = {}) const;
   /// What `trade` and `advise` go over; empty: what the commands go over.

@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "withy/core/plugin/memory.hpp"
 #include "withy/host/snapshot_parts.hpp"
@@ -33,17 +36,73 @@ void drop_python_objects(Value& parts) {
   }
 }
 
+/// All that a value says in words, a word a line.
+void add_words(const Value& value, std::string& words) {
+  if (value.kind() == Value::Kind::text) words += value.text() + '\n';
+  for (const auto& [key, member] : value.members()) add_words(member, words);
+  for (const Value& item : value.items()) add_words(item, words);
+}
+
+/// Whether `name` stands in the text as a name or as the beginning of one with a dot, as in "2 * imu.z".
+bool mentions(const std::string& text, const std::string& name) {
+  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    const bool begins = at == 0 || !(in_name(text[at - 1]) || text[at - 1] == '.');
+    if (begins && (end == text.size() || !in_name(text[end]))) return true;
+  }
+  return false;
+}
+
+/// Takes out the outputs that are shown alone: no load, event or motion has their names.
+void drop_shown_outputs(Value& source) {
+  Value* outputs = nullptr;
+  std::string words;
+  for (auto& [key, value] : source.members()) {
+    if (key == "outputs") outputs = &value;
+    if (key == "loads" || key == "events" || key == "motions") add_words(value, words);
+  }
+  if (outputs == nullptr) return;
+  std::vector<Value::Member> kept;
+  for (bool more = true; more;) {  // what is kept may have the names of others
+    more = false;
+    for (const Value::Member& output : std::as_const(*outputs).members()) {
+      const bool again = std::ranges::any_of(kept, [&](const Value::Member& m) { return m.first == output.first; });
+      if (again || !mentions(words, output.first)) continue;
+      kept.push_back(output);
+      add_words(output.second, words);
+      more = true;
+    }
+  }
+  if (kept.empty()) return drop(source, {"outputs"});  // as of a scene that asks for none
+  outputs->members() = std::move(kept);
+}
+
 /// Without what decides on where a run begins and ends and on what it shows, but not on the steps from a state.
 Value deciding(Value source) {
-  drop(source, {"name", "time", "outputs", "initial", "closing"});  // the last says how `initial` closed loops
+  drop(source, {"name", "time", "initial", "closing"});  // the last says how `initial` closed loops
+  drop_shown_outputs(source);
   for (auto& [key, value] : source.members())
     if (key == "bodies" || key == "loads") drop_python_objects(value);
   return source;
 }
 
+/// A type of sensors.
+bool has_output_of(const Value& source, const std::string& type) {
+  const Value* outputs = source.find("outputs");
+  return outputs != nullptr && std::ranges::any_of(outputs->members(), [&](const Value::Member& output) {
+           const Value* given = output.second.find("type");
+           return given != nullptr && given->text() == type;
+         });
+}
+
 SnapshotOrigin origin_of(const withy::Scene& scene) {
   withy::Scene trimmed = scene;
   trimmed.source = deciding(std::move(trimmed.source));
+  // Whatever builds the sensors are of that it only shows.
+  std::erase_if(trimmed.sources.plugins, [&](const PluginUsed& used) {
+    return used.kind == kind_name<Sensor>() && !has_output_of(trimmed.source, used.id);
+  });
   const Provenance p = provenance_of(trimmed);
   const std::string subject = p.subject();
   std::string builds = p.program.version + '\n' + p.program.description + '\n' + p.program.build;

@@ -16,6 +16,7 @@
 #include "withy/study/candidates.hpp"
 #include "withy/study/comparison.hpp"
 #include "withy/study/left_out.hpp"
+#include "withy/study/unfit.hpp"
 
 namespace withy::host {
 namespace {
@@ -64,15 +65,19 @@ std::string advice_of(const study::Prepared& prepared, const study::Outputs& out
 std::string Scene::compare(const std::vector<std::string>& formulations, const std::string& reference,
                            const Follow& follow, const std::vector<std::string>& outputs) const {
   const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
+  std::vector<study::Unfit> left_out;
+  const std::vector<std::string> chosen =
+      formulations.empty() ? study::usual_formulations(base->scene.model, library().registry(), left_out)
+                           : formulations;
   std::vector<ComparisonAt> compared;
   compared.push_back({{},
                       study::compare(
-                          base->values, library().registry(), formulations, reference,
+                          base->values, library().registry(), chosen, reference,
                           [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
                             return study::simulate(prepared, library().registry(), output, control_of(follow));
                           },
                           outputs)});
-  return json_line(comparison_json(compared, reference, {}, {}, library().registry()));
+  return json_line(comparison_json(compared, reference, {}, left_out, library().registry()));
 }
 
 std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follow,

@@ -28,14 +28,19 @@ Json body_json(const BodyValidity& b, const Certificate& certificate, const RunS
     if (b.load.shares[k] != 0) shares[motion_term_name(k)] = b.load.shares[k];
   j["load_over_buckling"] = {
       {"value", b.load.size()},
-      {"sense", b.load.greatest > -b.load.least ? "stiffening" : "buckling"},
+      {"sense", b.load.stiffens ? "stiffening" : "buckling"},
       {"time", b.load_time},
       {"binds", b.load.size() > 0 ? Json(motion_term_name(study::greatest_share(b.load))) : Json()},
       {"shares", std::move(shares)},
       {"compressive", b.buckling}};
+  if (b.whole.size() > 0) j["load_over_buckling"]["of_all_segments"] = b.whole.size();
   const auto deflection = summary.peak_deflection_ratio.find(b.name);
   j["deflection_over_length"] = deflection != summary.peak_deflection_ratio.end() ? Json(deflection->second) : Json();
-  j["deflection_of"] = b.station.empty() ? Json() : Json(b.station);
+  const auto angle = summary.peak_section_angle.find(b.name);
+  j["section_angle"] = angle != summary.peak_section_angle.end() ? Json(angle->second) : Json();
+  std::string measured = b.station;
+  for (const std::string& station : b.beside) measured += ", " + station;
+  j["deflection_of"] = measured.empty() ? Json() : Json(measured);
   j["highest_mode"] = Json::object();
   for (const HighestMode& h : b.highest) {
     j["highest_mode"][h.family] = {
@@ -127,6 +132,13 @@ Json steps_json(const study::StepLimit& s) {
 
 }  // namespace
 
+Json families_json(const std::vector<study::BodyFamilies>& families) {
+  Json all = Json::array();
+  for (const study::BodyFamilies& f : families)
+    all.push_back({{"body", f.body}, {"strain", f.strain}, {"family", f.family}, {"modes", f.modes}});
+  return all;
+}
+
 Json indicators_json(const std::vector<study::Indicator>& indicators) {
   Json all = Json::array();
   for (const study::Indicator& i : indicators)
@@ -151,9 +163,7 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
                             : Json();
   c["drift_by"] = drift_by_json(certificate);
   c["dropped"] = dropped_json(certificate);
-  c["families"] = Json::array();
-  for (const study::BodyFamilies& f : certificate.families)
-    c["families"].push_back({{"body", f.body}, {"strain", f.strain}, {"family", f.family}, {"modes", f.modes}});
+  c["families"] = families_json(certificate.families);
   c["acceleration_rounding"] = certificate.rounding ? Json(*certificate.rounding) : Json();
   c["samples"] = certificate.samples;
   c["bodies"] = Json::array();

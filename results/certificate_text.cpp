@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/simulation/validity_limits.hpp"
 
 namespace withy {
 namespace {
@@ -139,28 +140,22 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
   if (b.load.size() > 0) {
     const std::size_t most = study::greatest_share(b.load);
     out += fmt::format("; {} load {:.2g} of the buckling load, most of it from {}",
-                       b.load.greatest > -b.load.least ? "stiffening" : "compressive", b.load.size(),
-                       motion_in_words(most));
+                       b.load.stiffens ? "stiffening" : "compressive", b.load.size(), motion_in_words(most));
+    if (b.load.stiffens && b.buckling > load_limit)
+      out += fmt::format("; compressive load up to {:.2g} of it", b.buckling);
   }
-  if (const auto d = summary.peak_deflection_ratio.find(b.name); d != summary.peak_deflection_ratio.end())
-    out += fmt::format("; {} {:.2g} of its length", study::deflection_name(b), d->second);
+  if (b.whole.size() > 0)
+    out += fmt::format("; all segments as one piece: {} load {:.2g} of the buckling load",
+                       b.whole.stiffens ? "stiffening" : "compressive", b.whole.size());
+  if (const auto bend = study::greatest_bend(b, summary)) {
+    out += fmt::format("; {} {:.2g} of its length", study::deflection_name(b), bend->deflection);
+    if (bend->bent() && bend->by_angle()) out += fmt::format(", where the section turns by {:.2g} rad", bend->angle);
+  }
   for (const HighestMode& h : b.highest)
     if (h.modes > 1)
       out += fmt::format("; highest of {} {}modes has {} of their energy", h.modes, study::before_mode(h.family),
                          h.share > rounding_of_energy ? percent(h.share) : "next to none");
   return out;
-}
-
-/// Families are named after the ends they are made for, the root's first.
-std::string families_text(const study::Certificate& certificate) {
-  std::string text, body;
-  for (const study::BodyFamilies& f : certificate.families) {
-    text += f.body == body ? ", " : fmt::format("{}{}: ", text.empty() ? "" : "; ", f.body);
-    text += fmt::format("{}{}{}{}{}", f.modes, f.strain.empty() ? "" : " ", f.strain, f.family.empty() ? "" : " ",
-                        f.strain.empty() && f.family.empty() ? " of its own" : f.family);
-    body = f.body;
-  }
-  return text;
 }
 
 /// Of a drift, whose it is.
@@ -259,6 +254,17 @@ std::string step_limit_text(const study::StepLimit& s) {
   return text;
 }
 
+std::string families_text(const std::vector<study::BodyFamilies>& families) {
+  std::string text, body;
+  for (const study::BodyFamilies& f : families) {
+    text += f.body == body ? ", " : fmt::format("{}{}: ", text.empty() ? "" : "; ", f.body);
+    text += fmt::format("{}{}{}{}{}", f.modes, f.strain.empty() ? "" : " ", f.strain, f.family.empty() ? "" : " ",
+                        f.strain.empty() && f.family.empty() ? " of its own" : f.family);
+    body = f.body;
+  }
+  return text;
+}
+
 std::string limits_text(const std::vector<study::Indicator>& indicators) {
   if (indicators.empty()) return {};
   const study::Indicator& first = indicators.front();
@@ -283,7 +289,7 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
     line("",
          "a mix conserves no more than each of its formulations does, and may be further off than any of them alone");
   for (const std::string& text : plan_text(certificate)) line("", text);
-  if (!certificate.families.empty()) line("modes", families_text(certificate));
+  if (!certificate.families.empty()) line("modes", families_text(certificate.families));
   line("energy", energy_text(certificate));
   if (certificate.momentum.conserved)
     line("momentum",

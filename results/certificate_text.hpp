@@ -10,6 +10,8 @@ namespace withy {
 
 /// The certificate in plain words, ending its last line.
 std::string certificate_text(const Model& model, const RunSummary& summary, const study::Certificate& certificate);
+/// "link1: 2 bending_y clamped-free": families are named after the ends they are made for, the root's first.
+std::string families_text(const std::vector<study::BodyFamilies>& families);
 /// How a run stands against the limits of its formulation: the nearest, or which it has passed; empty where there is
 /// none.
 std::string limits_text(const std::vector<study::Indicator>& indicators);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -60,7 +61,7 @@ void add_row(TextTable& table, const ComparisonAt& group, const study::ComparedR
   row.push_back(std::to_string(s.steps.evaluations));
   row.push_back(fmt::format("{:.2f}", 1e3 * s.cpu_seconds));
   const study::Comparison& c = group.comparison;
-  const bool apart = c.has_reference() && &run != &c.runs[c.reference];
+  const bool apart = c.has_distances(run) && &run != &c.runs[c.reference];
   if (!c.outputs.empty()) {
     for (const auto& o : c.has_reference() ? c.output_errors(run) : OutputErrors())
       row.push_back(apart ? error_text(o) : "-");
@@ -74,6 +75,16 @@ void add_row(TextTable& table, const ComparisonAt& group, const study::ComparedR
   table.add(std::move(row));
 }
 
+/// Why a run has no errors; empty where it has some.
+std::string no_errors_text(const study::Comparison& c, const study::ComparedRun& run) {
+  if (!c.has_reference() || c.has_distances(run)) return "";
+  return fmt::format(
+      "No errors: it and the reference have no output in common but the start; it ended at {:.4g} s, the reference at "
+      "{:.4g} s, and outputs are {:.4g} s apart. More of them, as --set time.output={:.2g}, tell.",
+      run.summary.reached, c.runs[c.reference].summary.reached, run.prepared.scene.output,
+      std::min(run.summary.reached, c.runs[c.reference].summary.reached) / 20);
+}
+
 /// \param varied the value is written, too
 void add_runs(Json& runs, const ComparisonAt& group, bool varied, Registry& registry) {
   for (const study::ComparedRun& run : group.comparison.runs) {
@@ -82,11 +93,13 @@ void add_runs(Json& runs, const ComparisonAt& group, bool varied, Registry& regi
     j.update(run_json(run.prepared.scene, run.summary,
                       study::certify(run.prepared, {&run.summary, nullptr, {}, {}}, registry)));
     if (group.comparison.has_reference()) {
-      const study::NamedDistances d = group.comparison.distances(run);
+      // At the start all are alike: a run that has nothing more in common with the reference has no distances.
+      const bool measured = group.comparison.has_distances(run);
+      const study::NamedDistances d = measured ? group.comparison.distances(run) : study::NamedDistances();
       j["distance"] = {{"hinges", d.hinges},   {"tips", d.tips},     {"deflections", d.deflections},
                        {"moments", d.moments}, {"forces", d.forces}, {"until", d.until}};
       if (!group.comparison.outputs.empty()) j["outputs"] = Json::array();
-      for (const auto& o : group.comparison.output_errors(run))
+      for (const auto& o : measured ? group.comparison.output_errors(run) : OutputErrors())
         j["outputs"].push_back({{"output", o.label}, {"unit", o.unit}, {"distance", o.distance}, {"range", o.range}});
     }
     runs.push_back(std::move(j));
@@ -118,9 +131,13 @@ std::string comparison_text(const std::vector<ComparisonAt>& groups, const std::
     for (std::size_t i = 0; i < group.comparison.listed; ++i) {
       const study::ComparedRun& run = group.comparison.runs[i];
       add_row(table, group, run, label);
-      if (run.summary.status == RunStatus::completed) continue;
-      reasons += fmt::format("\n{}{}: {}\n", run.formulation(), label.empty() ? "" : " at " + label + " " + group.value,
-                             run.summary.message);
+      const bool ended_early = run.summary.status != RunStatus::completed || run.summary.ended_by_event;
+      std::string why = ended_early ? run.summary.message : "";
+      if (const std::string none = no_errors_text(group.comparison, run); !none.empty())
+        why += (why.empty() ? "" : " ") + none;
+      if (why.empty()) continue;
+      reasons +=
+          fmt::format("\n{}{}: {}\n", run.formulation(), label.empty() ? "" : " at " + label + " " + group.value, why);
     }
   }
   return fmt::format("{} ({})\n\n{}\nErrors are greatest distances from {}, {}, while both ran.\n{}",

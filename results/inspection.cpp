@@ -13,7 +13,11 @@
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/results/certificate_json.hpp"
+#include "withy/results/certificate_text.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/study/formulation_meaning.hpp"
+#include "withy/study/indicators_at.hpp"
 
 namespace withy {
 namespace {
@@ -26,6 +30,13 @@ std::string said(const Scene& scene, const char* group, const std::string& name,
   const Value* const one = all != nullptr ? all->find(name) : nullptr;
   const Value* const text = one != nullptr ? one->find(key) : nullptr;
   return text != nullptr ? text->text() : std::string();
+}
+
+/// The formulation that a body has of its own, by name or by its two choices; empty where it has the scene's.
+std::string own_formulation(const Scene& scene, const std::string& body) {
+  const Value* const one = scene.source.at("bodies").find(body);
+  const Value* const own = one != nullptr ? one->find("formulation") : nullptr;
+  return own != nullptr && own->kind() != Value::Kind::null ? study::formulation_title(*own) : std::string();
 }
 
 /// Plugin id of a body, hinge or load: "beam".
@@ -58,7 +69,7 @@ Json bodies_json(const Scene& scene) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& body = model.bodies()[b];
     const HingeNode& hinge = model.hinges()[b];
-    const std::string own = said(scene, "bodies", scene_name(body), "formulation");
+    const std::string own = own_formulation(scene, scene_name(body));
     // The welds between segments are not in the scene.
     const std::string hinge_type = type_of(scene, "hinges", hinge.name);
     bodies.push_back({{"name", body.name},
@@ -66,7 +77,7 @@ Json bodies_json(const Scene& scene) {
                       {"mass", mass_of(*body.body)},
                       {"modes", body.body->shape().mode_names},
                       {"remarks", body.body->remarks()},
-                      {"formulation", own.empty() ? scene.formulation_name : own},
+                      {"formulation", own.empty() ? study::formulation_title(scene) : own},
                       {"hinge",
                        {{"name", hinge.name},
                         {"type", hinge_type.empty() ? "weld" : hinge_type},
@@ -129,13 +140,14 @@ Json mass_matrix_json(const study::Prepared& prepared, const State& state) {
 
 }  // namespace
 
-Json inspection_json(const study::Prepared& prepared, const State& state, const std::string& meaning,
+Json inspection_json(const study::Prepared& prepared, const State& state, Registry& registry,
                      const std::vector<LoadedPlugin>& plugins) {
   const Scene& scene = prepared.scene;
   Json j;
   j["scene"] = scene.file;
   j["name"] = scene.name;
-  j["formulation"] = {{"name", scene.formulation_name}, {"meaning", meaning}};
+  const study::FormulationWords formulation = study::formulation_words_of(scene, registry);
+  j["formulation"] = {{"name", formulation.name}, {"title", formulation.title}, {"meaning", formulation.meaning}};
   j["integrator"] = value_json(scene.source.at("integrator"));
   j["bodies"] = bodies_json(scene);
   j["loads"] = Json::array();
@@ -159,8 +171,10 @@ Json inspection_json(const study::Prepared& prepared, const State& state, const 
                             {"components", std::move(components)}});
   }
   j["coordinates"] = prepared.model().layout().speed_names;
+  j["families"] = families_json(study::families_of(scene));
   j["compiled"] = prepared.equations->savings();
   j["mass_matrix"] = mass_matrix_json(prepared, state);
+  j["indicators"] = indicators_json(study::indicators_at(prepared, state));
   j["plugins"] = Json::array();
   for (const LoadedPlugin& p : plugins) j["plugins"].push_back({{"name", p.name}, {"file", p.file}});
   return j;
@@ -227,7 +241,7 @@ std::string tree_text(const Scene& scene) {
     const Branch& branch = all.at(e.body);
     const BodyNode& body = model.bodies()[static_cast<std::size_t>(e.body)];
     const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(e.body)];
-    const std::string own = said(scene, "bodies", scene_name(body), "formulation");
+    const std::string own = own_formulation(scene, scene_name(body));
     out += fmt::format("{}{} {}{}: {}{}, {:.6g} kg{}   [{}: {} at {}{}]\n", e.indent, e.last ? "└─" : "├─",
                        e.level > most_indented ? fmt::format("(level {}) ", e.level) : "", scene_name(body),
                        type_of(scene, "bodies", scene_name(body)),
@@ -299,12 +313,21 @@ std::string matrix_text(const Json& m) {
   return out;
 }
 
+/// Against the limits of the formulation, at this state alone.
+std::string limits_at_text(const Json& indicators) {
+  std::string out;
+  for (const Json& i : indicators)
+    out += fmt::format("  {}: {:.2g}, limit {:.3g}\n", i["what"].get<std::string>(), i["value"].get<double>(),
+                       i["limit"].get<double>());
+  return out.empty() ? out : "\nvalidity at this state, before anything has moved\n" + out;
+}
+
 }  // namespace
 
 std::string inspection_text(const Scene& scene, const Json& j) {
   const Json& formulation = j["formulation"];
   std::string out = fmt::format("{} ({})\nformulation {}: {}\nintegrator {}\n\n", j["name"].get<std::string>(),
-                                j["scene"].get<std::string>(), formulation["name"].get<std::string>(),
+                                j["scene"].get<std::string>(), formulation["title"].get<std::string>(),
                                 formulation["meaning"].get<std::string>(), integrator_text(j["integrator"]));
   out += tree_text(scene);
   const auto list = [&](const std::string& head, const char* key) {
@@ -312,6 +335,8 @@ std::string inspection_text(const Scene& scene, const Json& j) {
     for (const Json& item : j[key]) out += "  " + item.get<std::string>() + '\n';
   };
   list(fmt::format("{} coordinates", j["coordinates"].size()), "coordinates");
+  if (const auto families = study::families_of(scene); !families.empty())
+    out += "\nmodes\n  " + families_text(families) + '\n';
   list("compiled", "compiled");
   for (const Json& body : j["bodies"]) {
     if (body["remarks"].empty()) continue;
@@ -326,6 +351,7 @@ std::string inspection_text(const Scene& scene, const Json& j) {
   if (j.contains("constraints")) out += loops_text(j["constraints"]);
   out += outputs_text(j["outputs"]);
   if (!j["mass_matrix"].is_null()) out += matrix_text(j["mass_matrix"]);
+  out += limits_at_text(j["indicators"]);
   out += "\nplugins loaded\n";
   for (const Json& p : j["plugins"])
     out += fmt::format("  {}  {}\n", p["name"].get<std::string>(), p["file"].get<std::string>());

@@ -16,9 +16,9 @@ struct LoadedPlugin {
 };
 
 /// Bodies, loads, motions, coordinates, savings, plugins, and the mass matrix at a state: condition, attainable
-/// accuracy of accelerations, nearly massless directions. The matrix is null for models too large to look at. \param
-/// meaning of the formulation, in a sentence
-nlohmann::ordered_json inspection_json(const study::Prepared& prepared, const State& state, const std::string& meaning,
+/// accuracy of accelerations, nearly massless directions; modes with their families, and how the state stands against
+/// the limits of the formulation. The matrix is null for models too large to look at.
+nlohmann::ordered_json inspection_json(const study::Prepared& prepared, const State& state, Registry& registry,
                                        const std::vector<LoadedPlugin>& plugins);
 /// The same in words, with the tree drawn. \param inspection of inspection_json for this scene
 std::string inspection_text(const Scene& scene, const nlohmann::ordered_json& inspection);

@@ -7,6 +7,7 @@
 
 #include "withy/results/svg_plot.hpp"
 #include "withy/results/text_table.hpp"
+#include "withy/study/formulation_meaning.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy {
@@ -62,7 +63,7 @@ Json inverse_json(const Scene& scene, const RunSummary& summary, const study::In
 
 std::string inverse_text(const std::string& title, const Scene& scene, const RunSummary& summary,
                          const study::InverseStudy& study, const std::vector<std::string>& ignored) {
-  return fmt::format("{} ({}, {}, {} outputs, {})\n\n{}", title, scene.formulation_name, scene.integrator_name,
+  return fmt::format("{} ({}, {}, {} outputs, {})\n\n{}", title, study::formulation_title(scene), scene.integrator_name,
                      study.times().size(), study::outcome_text(summary), demands_text(study)) +
          ignored_text(ignored);
 }

@@ -55,6 +55,7 @@ Json linear_model_json(const study::Configuration& c, const study::LinearModel& 
   j["D"] = rows_json(s.D);
   j["accelerations"] = accelerations;
   j["equilibrium"] = linear.equilibrium;
+  j["frozen"] = linear.frozen;
   j["changing"] = linear.changing;
   j["derivatives"] = linear.derivatives;
   j["output_derivatives"] = linear.output_derivatives;

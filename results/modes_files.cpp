@@ -137,6 +137,7 @@ Json modes_json(const study::ModesOf& run) {
     }
     Json point;
     point["value"] = at.value;
+    point["jump"] = study::jump_text(at.jump);
     point["steady"] = at.steady ? found_json(at) : Json();
     point["turn"] = at.turn ? turn_json(*at.turn) : Json();
     if (at.period > 0) point["period"] = at.period, point["forgotten"] = at.forgotten;

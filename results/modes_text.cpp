@@ -85,6 +85,8 @@ std::string sweep_text(const study::ModesOf& run, const std::string& label, std:
       cells.push_back(grows ? fmt::format("+{:.6g}/s", m->growth()) : fmt::format("{:.6g}", m->frequency()));
     }
     table.add(std::move(cells));
+    if (const std::string words = study::jump_text(at.jump); !words.empty())
+      problems += fmt::format("{} = {:.6g}: {}\n", label, at.value, words);
     if (!at.problem.empty()) problems += fmt::format("{} = {:.6g}: {}\n", label, at.value, at.problem);
   }
   std::string text = table.str();

@@ -54,6 +54,8 @@ Json margins_json(const Margins& m) {
   j["lag"] = m.lag() != nullptr ? phase_json(*m.lag()) : Json();
   j["lead"] = m.lead() != nullptr ? phase_json(*m.lead()) : Json();
   j["delay"] = m.delay() != nullptr ? phase_json(*m.delay()) : Json();
+  j["samples"] = m.samples() ? Json(*m.samples()) : Json();
+  j["hidden_growth"] = m.hidden_growth;
   return j;
 }
 
@@ -103,6 +105,7 @@ Json response_json(const study::Configuration& c, const study::Response& r) {
   j["opened"] = r.opened;
   j["period"] = s.period;
   j["equilibrium"] = r.model.equilibrium;
+  j["frozen"] = r.model.frozen;
   j["changing"] = r.model.changing;
   j["held"] = c.held_names();
   j["derivatives"] = r.model.derivatives;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "withy/results/response_files.hpp"
 #include "withy/results/text_table.hpp"
+#include "withy/study/formulation_meaning.hpp"
 
 namespace withy {
 namespace {
@@ -34,7 +36,11 @@ std::string phase_words(const Margins& m, bool sampled) {
   if (m.lead() != nullptr)
     text += fmt::format("{} lead by {} at {}", m.lag() != nullptr ? " or" : ", the phase may",
                         angle_words(m.lead()->angle), hertz_text(m.lead()->omega));
-  if (m.delay() != nullptr)
+  if (const std::optional<int> samples = m.samples())
+    text += *samples > 0 ? fmt::format(", the delay may grow by {} sample{} ({:.3g} ms), not by one more", *samples,
+                                       *samples > 1 ? "s" : "", 1e3 * *samples * m.period)
+                         : ", the delay may not grow by a whole sample";
+  else if (m.delay() != nullptr)
     text +=
         fmt::format(", the delay may grow by {:.3g} ms at {}", 1e3 * m.delay()->delay, hertz_text(m.delay()->omega));
   if (!sampled && m.last >= 1)
@@ -44,6 +50,8 @@ std::string phase_words(const Margins& m, bool sampled) {
 
 /// "stable: …", or what grows.
 std::string loop_words(const Margins& m, bool sampled) {
+  if (m.hidden_growth > 0)
+    return fmt::format("unstable: a pole that the loop does not move grows at {:.4g}/s, at any gain", m.hidden_growth);
   if (!m.stable)
     return std::isfinite(m.growth) && m.growth > 0 ? fmt::format("unstable, growing at {:.4g}/s", m.growth)
                                                    : "on the edge of stability";
@@ -138,7 +146,7 @@ std::string response_text(const study::Configuration& c, const study::Response& 
   else
     text = fmt::format("{} to {}: {}, {}\n", r.model.inputs[0].name, r.model.outputs[0].name, peak_words(r),
                        static_words(r));
-  text += fmt::format("{} in {}, {}{}{}\n", c.prepared().title(), c.prepared().scene.formulation_name,
+  text += fmt::format("{} in {}, {}{}{}\n", c.prepared().title(), study::formulation_title(c.prepared().scene),
                       s.sampled() ? fmt::format("sampled every {:g} s, the input held between samples", s.period)
                                   : "continuous in time",
                       r.model.equilibrium ? ""

@@ -15,6 +15,7 @@
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/study/formulation_meaning.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy {
@@ -104,7 +105,8 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
   }
   std::size_t width = 23;  // that of the certificate below
   for (const auto& [what, text] : lines) width = std::max(width, what.size());
-  std::string out = fmt::format("{} ({}, {})\n\n", prepared.title(), scene.formulation_name, scene.integrator_name);
+  std::string out =
+      fmt::format("{} ({}, {})\n\n", prepared.title(), study::formulation_title(scene), scene.integrator_name);
   for (const auto& [what, text] : lines) out += fmt::format("{:<{}} {}\n", what, width, text);
   if (summary.status == RunStatus::completed && !summary.message.empty()) out += "\nnote: " + summary.message + '\n';
   return out;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "withy/results/json_text.hpp"
@@ -174,6 +175,16 @@ void add_lines(std::string& out, const Json& map, int depth) {
   }
 }
 
+/// Without what a command line changes.
+SceneValues as_in_file(const SceneValues& scene) { return SceneValues::parse(scene.text(), scene.file()); }
+
+/// Outputs that a command line asks for beside the file's make no other scene.
+Value without_outputs(const SceneValues& scene) {
+  Value root = scene.root();
+  std::erase_if(root.members(), [](const auto& member) { return member.first == "outputs"; });
+  return root;
+}
+
 }  // namespace
 
 std::string edited(std::string text, const std::vector<std::string>& overrides) {
@@ -181,9 +192,19 @@ std::string edited(std::string text, const std::vector<std::string>& overrides) 
   return text;
 }
 
+void check_written(const study::Prepared& prepared, const std::string& file, const std::string& also,
+                   Registry& registry) {
+  keep_inputs(file, files_of(prepared.scene, also));
+  const SceneValues& scene = prepared.values;
+  if (!same_content(without_outputs(as_in_file(scene)), without_outputs(scene)))
+    throw study::InputError("--write takes the scene as its file has it: leave out --formulation and --integrator");
+  // What the scene names has to be found from the new file's folder, too.
+  make_scene(SceneValues::parse(scene.text(), file), registry);
+}
+
 void write_changed(const SceneValues& scene, const std::vector<study::Change>& changes, const std::string& file,
                    Registry& registry) {
-  SceneValues wanted = scene;
+  SceneValues wanted = as_in_file(scene);
   std::vector<std::string> overrides;
   for (const study::Change& change : changes) {
     wanted.set(change.path, change.value, "--write");
@@ -194,8 +215,10 @@ void write_changed(const SceneValues& scene, const std::vector<study::Change>& c
   if (!same_content(written.root(), wanted.root()))
     throw study::InputError("--write: the text of " + scene.file() +
                             " cannot be edited into this; nothing is written. Change it by hand as the lines say");
-  keep_inputs(file, files_of(make_scene(written, registry)));
-  keep_inputs(file, {scene.file()});
+  // An older file of this name is replaced; what the new scene reads, and the file it comes from, are not.
+  std::vector<std::filesystem::path> read = files_of(make_scene(written, registry));
+  read.front() = scene.file();
+  keep_inputs(file, read);
   write_file(file, text);
 }
 

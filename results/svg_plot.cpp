@@ -135,8 +135,14 @@ void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen&
     return;
   }
   out += "<polyline " + stroke(p) + " points=\"";
-  for (std::size_t i = 0; i < curve.x.size(); ++i)
+  auto gap = curve.behind_gaps.begin();
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (gap != curve.behind_gaps.end() && i == *gap) {
+      out += "\"/>\n<polyline " + stroke(p) + " points=\"";
+      ++gap;
+    }
     fmt::format_to(std::back_inserter(out), "{:.2f},{:.2f} ", s.x(curve.x[i]), y(curve.y[i]));
+  }
   out += "\"/>\n";
   if (!curve.ends_early) return;
   const double cx = s.x(curve.x.back());

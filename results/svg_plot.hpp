@@ -18,8 +18,9 @@ struct Curve {
   bool ends_early = false;  ///< its last point is marked with a cross
   bool points = false;      ///< dots in place of a line
   std::optional<std::size_t> pen = {};
-  std::string name = {};                ///< on pages, where the legend has none for its pen
-  std::vector<std::string> notes = {};  ///< what pages say of each point
+  std::string name = {};                      ///< on pages, where the legend has none for its pen
+  std::vector<std::string> notes = {};        ///< what pages say of each point
+  std::vector<std::size_t> behind_gaps = {};  ///< points that no line joins with those before them, rising
 };
 
 /// One pair of axes.

@@ -27,8 +27,14 @@ bool asked(const std::string& full, const std::string& given) {
 Curve curve_of(const DecimatedTable& table, std::size_t column, double scale) {
   Curve curve;
   const std::vector<double> times = table.column(0), numbers = table.column(column);
+  bool gap = false;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (!std::isfinite(numbers[i])) continue;
+    if (!std::isfinite(numbers[i])) {
+      gap = !curve.x.empty();
+      continue;
+    }
+    if (gap) curve.behind_gaps.push_back(curve.x.size());
+    gap = false;
     curve.x.push_back(times[i]);
     curve.y.push_back(scale * numbers[i]);
   }

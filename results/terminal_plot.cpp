@@ -55,7 +55,8 @@ void draw(Canvas& canvas, const Curve& curve, char owner, double x0, double x1, 
   };
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
     const int x = place(curve.x[i], x0, x1, 2 * panel_columns), y = place(curve.y[i], y0, y1, 4 * panel_rows);
-    const std::size_t before = i > 0 ? i - 1 : 0;
+    const bool joined = i > 0 && !std::binary_search(curve.behind_gaps.begin(), curve.behind_gaps.end(), i);
+    const std::size_t before = joined ? i - 1 : i;
     const int px = place(curve.x[before], x0, x1, 2 * panel_columns),
               py = place(curve.y[before], y0, y1, 4 * panel_rows);
     const int steps = std::max({std::abs(x - px), std::abs(y - py), 1});

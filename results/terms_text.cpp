@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "withy/results/text_table.hpp"
+#include "withy/study/formulation_meaning.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy {
@@ -61,7 +62,7 @@ std::string terms_tables(const study::TermSizes& sizes) { return term_sizes_text
 
 std::string terms_text(const std::string& title, const Scene& scene, const RunSummary& summary,
                        const study::TermSizes& sizes) {
-  return fmt::format("{} ({}, {} outputs, {})\n\n{}", title, scene.formulation_name, sizes.times.size(),
+  return fmt::format("{} ({}, {} outputs, {})\n\n{}", title, study::formulation_title(scene), sizes.times.size(),
                      study::outcome_text(summary), terms_tables(sizes));
 }
 

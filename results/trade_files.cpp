@@ -64,7 +64,7 @@ Json trade_reference_json(const study::TradeReference& r) {
 }
 
 Json trade_json(const Scene& scene, const study::TradeStudy& study, const std::vector<study::TradeResult>& results,
-                const std::vector<bool>& front) {
+                const std::vector<bool>& front, const std::vector<double>& shares) {
   Json j{{"scene", scene.file}, {"name", scene.name}};
   j["outputs"] = Json::array();
   for (const study::Output& o : study.outputs().list()) j["outputs"].push_back({{"output", o.label}, {"unit", o.unit}});
@@ -74,6 +74,7 @@ Json trade_json(const Scene& scene, const study::TradeStudy& study, const std::v
     j["points"].push_back(trade_result_json(results[i]));
     j["points"].back()["pareto"] = static_cast<bool>(front[i]);
   }
+  j["cheapest"] = cheapest_json(results, shares);
   return j;
 }
 

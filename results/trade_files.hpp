@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/results/cheapest_points.hpp"
 #include "withy/results/kept_results.hpp"
 #include "withy/study/trade.hpp"
 
@@ -17,9 +18,10 @@ std::string trade_over_text(const study::Point& point);
 
 nlohmann::ordered_json trade_result_json(const study::TradeResult& result);
 nlohmann::ordered_json trade_reference_json(const study::TradeReference& reference);
-/// The content of trade.json. \param front one a result
+/// The content of trade.json. \param front one a result \param shares errors that the cheapest is named of
 nlohmann::ordered_json trade_json(const Scene& scene, const study::TradeStudy& study,
-                                  const std::vector<study::TradeResult>& results, const std::vector<bool>& front);
+                                  const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
+                                  const std::vector<double>& shares = usual_shares);
 /// A line a point.
 std::string trade_csv(const std::vector<study::TradeResult>& results, const std::vector<bool>& front);
 /// Error over cost, both logarithmic; a colour a formulation, the front as a line. A panel for each of the values gone

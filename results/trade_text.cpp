@@ -49,26 +49,6 @@ std::string points_text(const std::vector<study::TradeResult>& results, const st
   return table.str();
 }
 
-/// The answer: of each set of values gone over the cheapest models within some errors.
-std::string cheapest_text(const std::vector<study::TradeResult>& results) {
-  std::map<std::string, std::vector<const study::TradeResult*>> by_over;
-  for (const study::TradeResult& r : results)
-    if (r.completed()) by_over[trade_over_text(r.point)].push_back(&r);
-  std::string out;
-  for (const auto& [over, done] : by_over) {
-    for (const double limit : {0.1, 0.01, 0.001}) {
-      const study::TradeResult* best = nullptr;
-      for (const study::TradeResult* r : done)
-        if (r->relative_error <= limit && (best == nullptr || r->cpu_seconds < best->cpu_seconds)) best = r;
-      const std::string within = fmt::format("within {:g} %{}", 100 * limit, over.empty() ? "" : " at " + over);
-      out += best == nullptr ? fmt::format("{:<12} none of these models\n", within)
-                             : fmt::format("{:<12} {}: {:.2g} % off, {:.3g} ms\n", within, best->point.text(),
-                                           100 * best->relative_error, 1e3 * best->cpu_seconds);
-    }
-  }
-  return out.empty() ? out : "Cheapest:\n" + out + '\n';
-}
-
 /// Reasons of the points that failed, each said once.
 std::string failures_text(const std::vector<study::TradeResult>& results) {
   std::map<std::string, std::pair<std::string, std::size_t>> reasons;  // by formulation, integrator and status
@@ -110,8 +90,8 @@ std::string references_text(const study::TradeStudy& study) {
 
 std::string trade_text(const std::string& title, const study::TradeStudy& study,
                        const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
-                       Registry& registry) {
-  return title + "\n\n" + cheapest_text(results) + points_text(results, front, study.outputs()) +
+                       Registry& registry, const std::vector<double>& shares) {
+  return title + "\n\n" + cheapest_text(results, shares) + points_text(results, front, study.outputs()) +
          "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
          "in % of each output's own range, the greatest of all.\n" +
          references_text(study) + formulation_words(formulations_of(results), registry) + failures_text(results);

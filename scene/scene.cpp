@@ -23,6 +23,7 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/names_alone.hpp"
 #include "withy/scene/scene_parts.hpp"
 #include "withy/scene/sha256.hpp"
 #include "withy/scene/span.hpp"
@@ -86,8 +87,14 @@ class SceneBuilder {
     add_outputs(tree);
     unbound_.report(checker_, refused_);
     if (tree.model != nullptr && diagnostics_.ok()) give_outputs(*tree.model, scene_.outputs, checker_);
-    if (tree.model != nullptr && diagnostics_.ok()) events.add_to(*tree.model, scene_.outputs, scene_.events);
-    if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model, document_, checker_, scene_);
+    if (tree.model != nullptr && diagnostics_.ok())
+      events.add_to(*tree.model, scene_.outputs, scene_.events);
+    else
+      check_event_names(document_, tree.names, checker_);
+    if (tree.model != nullptr && diagnostics_.ok())
+      set_start(*tree.model, document_, checker_, scene_);
+    else
+      check_start_names(document_, tree.names, checker_);
     if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model, document_, checker_, scene_);
     scene_.model = std::move(tree.model);
     return std::move(scene_);

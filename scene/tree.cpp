@@ -31,6 +31,7 @@ class TreeBuilder {
 
   SceneTree build(const Value& bodies, const Value& hinges, const Value& scene, const Vector3& gravity) {
     for (const auto& [name, value] : bodies.members()) bodies_.add(name, value);
+    const bool bodies_are_made = problems_.good;  // what is wrong with hinges takes no frame away
     for (const auto& [name, value] : hinges.members()) add_hinge(name, value);
     for (const TreeBodies::Entry& entry : bodies_.entries()) weld_segments(entry);
     problems_.good = check_topology(tree_.names.bodies.names(), links_, checker_) && problems_.good;
@@ -39,7 +40,7 @@ class TreeBuilder {
     for (const auto& [key, value] : scene.members())
       if (key != "bodies" && key != "hinges") bodies_.add_named_stations(value);
     bodies_.name_frames();
-    tree_.names.frames_complete = problems_.good;
+    tree_.names.frames_complete = bodies_are_made;
     if (!problems_.good) return std::move(tree_);
     try {
       tree_.model = std::make_unique<Model>(std::move(bodies_.nodes()), std::move(hinge_nodes_), gravity);

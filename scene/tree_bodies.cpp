@@ -155,7 +155,7 @@ void TreeBodies::add_segments(const std::string& plugin, const Value& value) {
     BodyNode& node = nodes_.emplace_back();
     node.name = fmt::format("{}.{}", whole.name, k + 1);
     node.terms = whole.terms;
-    node.segment = Segment{whole.name, k, segments.size()};
+    node.segment = Segment{whole.name, k, segments.size(), whole.body};
     if (segments[k] == nullptr || !check_shape(*segments[k], plugin, value)) {
       problems_.good = false;
       return;
@@ -199,8 +199,8 @@ void TreeBodies::add_ends(BodyNode& node, const Value& value) {
     if (auto section = node.body->station(std::string(station))) node.frames.push_back({station, *section, {}});
   }
   if (node.body->shape().modes() > 0)
-    if (auto place = measured_place(*node.body); place && node.frame(place->name) < 0)
-      node.frames.push_back({place->name, std::move(place->at), {}});
+    for (MeasuredPlace& place : measured_places(*node.body))
+      if (node.frame(place.name) < 0) node.frames.push_back({place.name, std::move(place.at), {}});
   if (!node.frames.empty() && node.frames[0].name == "root") return;
   problems_.key_error(value.at("frames").place().path, fmt::format("body '{}' has no station 'root'", node.name));
   node.body = nullptr;

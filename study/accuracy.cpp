@@ -149,4 +149,15 @@ std::string Accuracy::text() const {
   return text;
 }
 
+std::vector<double> read_shares(const std::vector<std::string>& texts, const std::string& option) {
+  std::vector<double> shares;
+  for (const std::string& text : texts) {
+    const Accuracy given = Accuracy::parse(text, option);
+    if (!given.share || given.angle || given.length)
+      throw InputError("--" + option + ": got '" + text + "'; need a relative error, as 1% or 0.01");
+    shares.push_back(*given.share);
+  }
+  return shares;
+}
+
 }  // namespace withy::study

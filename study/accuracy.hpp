@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "withy/study/measures.hpp"
 
@@ -41,5 +42,8 @@ struct Accuracy {
   /// As parse() reads it: "1%,2mm".
   [[nodiscard]] std::string option() const;
 };
+
+/// Relative errors, as "1%" or "0.01". \throws InputError naming the option where one is none
+std::vector<double> read_shares(const std::vector<std::string>& texts, const std::string& option);
 
 }  // namespace withy::study

@@ -100,6 +100,7 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
         "'withy trade' and 'withy compare' take it",
         scene.file, what_switches(*scene.model)));
   accuracy.require_something_of(evaluator.outputs());
+  require_a_run(scene);
   Advice advice;
   advice.limit_seconds = seconds ? *seconds : time_limit(evaluator);
   evaluator.limit(search_share * advice.limit_seconds);

@@ -8,6 +8,7 @@
 
 #include "withy/scene/scene.hpp"
 #include "withy/study/pace.hpp"
+#include "withy/study/third_order.hpp"
 
 namespace withy::study {
 namespace {
@@ -227,10 +228,11 @@ void YardstickSearch::explain_bending(const Reference& r) {
   const double use = r.third_order / accuracy_.share.value_or(policy::no_accuracy) / policy::last_reference_use;
   const bool askable = use * accuracy_.share.value_or(0) < policy::no_accuracy;
   advice_.trouble = fmt::format(
-      "no reference is exact enough to measure against: deflections of {:.2g} of a body's length are beyond what {} is "
-      "good for, about {:.2g} % of their range, and no kinematics is offered that is better. What to do: {}make the "
+      "no reference is exact enough to measure against: {} are beyond what {} is "
+      "good for, about {:.2g} % of the range of deflections, and no kinematics is offered that is better. What to do: "
+      "{}make the "
       "body a beam, which has 'exact', or one in segments; or ask for a shorter time (--set time.end=...)",
-      r.deflection, r.point.formulation, 100 * r.third_order,
+      bend_text(r.bend), r.point.formulation, 100 * r.third_order,
       accuracy_.share && askable ? fmt::format("ask for --accuracy {}; ", accuracy_.times(use).option()) : "");
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "withy/core/simulation/tips.hpp"
 #include "withy/core/simulation/validity_limits.hpp"
@@ -12,10 +14,19 @@
 namespace withy::study {
 namespace {
 
-std::string loads_of(const Model& model) {
-  std::vector<std::string> names;
-  for (const LoadNode& load : model.loads()) names.push_back(load.name);
-  return names.empty() ? "" : fmt::format(" and the loads ({})", listed(names));
+/// Weight, the rates of hinges and loads: what there is of these; empty where nothing is.
+std::string causes_of(const Model& model, const State& steady) {
+  std::vector<std::string> causes, moving, loads;
+  if (!model.gravity().isZero(0)) causes.emplace_back("weight");
+  for (const Slot& slot : model.layout().hinges) {
+    const auto first = steady.y.begin() + static_cast<std::ptrdiff_t>(model.layout().positions + slot.speed);
+    const auto moves = [](double rate) { return rate != 0; };
+    if (std::any_of(first, first + static_cast<std::ptrdiff_t>(slot.speeds), moves)) moving.push_back(slot.name);
+  }
+  if (!moving.empty()) causes.push_back(fmt::format("the motion of hinges ({})", listed(moving)));
+  for (const LoadNode& load : model.loads()) loads.push_back(load.name);
+  if (!loads.empty()) causes.push_back(fmt::format("the loads ({})", listed(loads)));
+  return fmt::format("{}", fmt::join(causes, " and "));
 }
 
 }  // namespace
@@ -37,10 +48,12 @@ std::string bent_text(const Configuration& c, const State& steady) {
   if (body == nullptr) return {};
   const Terms terms = body->terms.value_or(c.prepared().scene.formulation->terms());
   const bool small = terms.strain != StrainOrder::exact && !body->segment;
+  const std::string causes = causes_of(model, steady);
   return fmt::format(
-      "At this state {} is deflected by {:.2g} of its body's length, by weight{} as they are at t = {:g} s: what "
-      "acts there for a moment counts as lasting.{}",
-      tip_of, most, loads_of(model), steady.time,
+      "At this state {} is deflected by {:.2g} of its body's length{}.{}", tip_of, most,
+      causes.empty() ? ""
+                     : fmt::format(", by {} as they are at t = {:g} s: what acts there for a moment counts as lasting",
+                                   causes, steady.time),
       small ? fmt::format(" Beyond {:g} deflections are not small.", deflection_limit) : "");
 }
 

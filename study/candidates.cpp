@@ -1,5 +1,7 @@
 #include "withy/study/candidates.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <unordered_set>
@@ -184,6 +186,13 @@ std::vector<std::string> flexible_bodies(const Scene& scene) {
   for (const auto& [name, body] : scene.source.at("bodies").members())
     if (flexible.contains(name)) names.push_back(name);
   return names;
+}
+
+void require_a_run(const Scene& scene) {
+  if (!scene.end || *scene.end > scene.initial.time) return;  // without an end others say so
+  throw InputError(
+      fmt::format("{}: /time/end: the run ends at {:g} s, where it begins: nothing moves that an error could be of",
+                  scene.file, *scene.end));
 }
 
 }  // namespace withy::study

@@ -46,4 +46,7 @@ ReferenceFamilies reference_families(const Candidates& candidates, const Prepare
 /// Names of the scene's bodies that have modes, in its order; a beam in segments is one.
 std::vector<std::string> flexible_bodies(const Scene& scene);
 
+/// \throws InputError where a scene's run ends where it begins: no error shows, and everything would hold any accuracy.
+void require_a_run(const Scene& scene);
+
 }  // namespace withy::study

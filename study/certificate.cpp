@@ -10,38 +10,20 @@
 #include "withy/core/simulation/validity_limits.hpp"
 #include "withy/study/candidates.hpp"
 #include "withy/study/common_velocity.hpp"
+#include "withy/study/formulation_meaning.hpp"
 
 namespace withy::study {
 namespace {
-
-std::string meaning_of(const std::string& formulation, Registry& registry) {
-  const auto* plugin = registry.find<Formulation>(formulation);
-  return plugin != nullptr ? plugin->summary : std::string();
-}
 
 /// Flexible bodies in another formulation than the scene's.
 std::vector<OwnFormulation> own_formulations(const Scene& scene, Registry& registry) {
   std::vector<OwnFormulation> all;
   for (const std::string& name : flexible_bodies(scene)) {
     const Value* own = scene.source.at("bodies").at(name).find("formulation");
-    if (own == nullptr || own->kind() != Value::Kind::text || own->text() == scene.formulation_name) continue;
-    all.push_back({name, own->text(), meaning_of(own->text(), registry)});
-  }
-  return all;
-}
-
-/// As the scene chooses them, then those that bodies bring with them.
-std::vector<BodyFamilies> families_of(const Scene& scene) {
-  std::vector<BodyFamilies> all;
-  std::set<std::string> chosen;
-  for (const BodyModes& body : scene.modes) {
-    chosen.insert(body.body);
-    for (const ModeCount& count : body.counts)
-      if (count.modes > 0) all.push_back({body.body, count.strain, count.family_id(), count.modes});
-  }
-  for (const BodyNode& body : scene.model->bodies()) {
-    const auto modes = static_cast<std::size_t>(body.body->shape().modes());
-    if (modes > 0 && !body.segment && chosen.count(body.name) == 0) all.push_back({body.name, "", "", modes});
+    if (own == nullptr || own->kind() == Value::Kind::null) continue;
+    const FormulationWords words = formulation_words_of(*own, registry);
+    // By titles: of two with the same name the choices may be others.
+    if (words.title != formulation_title(scene)) all.push_back({name, words.title, words.meaning});
   }
   return all;
 }
@@ -141,12 +123,27 @@ std::optional<DriftShares> shares_of(const Prepared& prepared, const Evidence& e
 
 }  // namespace
 
+std::vector<BodyFamilies> families_of(const Scene& scene) {
+  std::vector<BodyFamilies> all;
+  std::set<std::string> chosen;
+  for (const BodyModes& body : scene.modes) {
+    chosen.insert(body.body);
+    for (const ModeCount& count : body.counts)
+      if (count.modes > 0) all.push_back({body.body, count.strain, count.family_id(), count.modes});
+  }
+  for (const BodyNode& body : scene.model->bodies()) {
+    const auto modes = static_cast<std::size_t>(body.body->shape().modes());
+    if (modes > 0 && !body.segment && chosen.count(body.name) == 0) all.push_back({body.name, "", "", modes});
+  }
+  return all;
+}
+
 Certificate certify(const Prepared& prepared, Evidence evidence, Registry& registry) {
   const Scene& scene = prepared.scene;
   const RunSummary& summary = *evidence.summary;
   Certificate c;
   c.formulation = scene.formulation_name;
-  c.meaning = meaning_of(scene.formulation_name, registry);
+  c.meaning = formulation_words_of(scene, registry).meaning;
   c.own = own_formulations(scene, registry);
   const Rung* last = nullptr;  // what a run that changes its formulation ended in
   if (evidence.plan) {

@@ -29,6 +29,8 @@ struct BodyFamilies {
   std::string family;  ///< empty where there is no choice of one
   std::size_t modes = 0;
 };
+/// As the scene chooses them, then those that bodies bring with them.
+std::vector<BodyFamilies> families_of(const Scene& scene);
 
 /// A drift, told apart.
 struct DriftShare {

@@ -43,13 +43,16 @@ bool CoarseRun::to(double time, const Control& control, std::size_t most) {
   return loop_.run(observer).cause == SteppingEnd::Cause::reached;
 }
 
-bool CoarseRun::track(double time, const Control& control, double apart, std::size_t most, WindowTrack& track) {
+bool CoarseRun::track(double time, const Control& control, double apart, std::size_t most,
+                      const std::function<void(const State&)>& look, WindowTrack& track) {
   CoarseObserver observer(control, evaluations() + most, [&](const State& s) {
     corrected_.sample(s);
     track.times.push_back(s.time);
     const bool due = s.time >= read_at_ + apart || s.time >= time;
     track.readings.push_back(due ? reader_.read(s) : std::vector<double>());
-    if (due) read_at_ = s.time;
+    if (!due) return;
+    read_at_ = s.time;
+    look(s);
   });
   loop_.move_end(time);
   if (loop_.run(observer).cause != SteppingEnd::Cause::reached) return false;

@@ -40,7 +40,9 @@ class CoarseRun {
   bool to(double time, const Control& control, std::size_t most);
   /// The same within `most` evaluations more, and keeps the times of its steps and readings of outputs at least `apart`
   /// [s] from each other.
-  bool track(double time, const Control& control, double apart, std::size_t most, WindowTrack& track);
+  /// \param look at the states that are read
+  bool track(double time, const Control& control, double apart, std::size_t most,
+             const std::function<void(const State&)>& look, WindowTrack& track);
   /// The same at the times of another track: lands on its steps, and reads where it was read.
   bool follow(const WindowTrack& other, const Control& control, WindowTrack& track);
 

@@ -40,6 +40,12 @@ std::vector<Comparison::OutputError> Comparison::output_errors(const ComparedRun
   return errors;
 }
 
+bool Comparison::has_distances(const ComparedRun& run) const {
+  if (!has_reference()) return false;
+  const std::vector<State>&own = run.outputs, &truth = runs[reference].outputs;
+  return own.size() > 1 && truth.size() > 1 && own[1].time == truth[1].time;
+}
+
 NamedDistances Comparison::distances(const ComparedRun& run) const {
   const Outputs asked = measured(*this, run);
   const auto [greatest, until] = study::distances(asked, read(asked, run), read(asked, runs[reference]));

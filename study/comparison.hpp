@@ -26,7 +26,10 @@ struct Comparison {
   std::size_t reference = 0;  ///< index; past the end where the user interrupted before it was run
   [[nodiscard]] bool interrupted() const { return runs.back().summary.status == RunStatus::interrupted; }
   [[nodiscard]] bool has_reference() const { return reference < runs.size(); }
-  /// Greatest distances of a run from the reference, over the outputs both have.
+  /// Whether a run and the reference have an output in common beyond the start, where all are alike.
+  [[nodiscard]] bool has_distances(const ComparedRun& run) const;
+  /// Greatest distances of a run from the reference, over the outputs both have. Those of a run without any say
+  /// nothing.
   [[nodiscard]] NamedDistances distances(const ComparedRun& run) const;
   std::vector<std::string> outputs;  ///< names that distances are asked of; empty: everything but sensors
   /// An output asked for by name: how far a run is from the reference, and how far that moves while both run.

@@ -4,12 +4,16 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/limit_sensor.hpp"
+#include "withy/core/plugin/digital_part.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/renewal.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
@@ -49,6 +53,20 @@ void require_no_switches(const std::string& file, const Model& model, const Load
                      node.name + "=null)");
 }
 
+/// The state with all loads begun. One with a delay that waits for its next sample takes it here: small motions are
+/// about loads that act, and the analyses hold time still, so that no sample would come.
+State all_begun(const Model& model, const EquationsOfMotion& equations, State state) {
+  state = begun(model, equations, std::move(state));
+  Renewal renewal(model, equations);
+  renewal.at(state);
+  for (const LoadSlot& slot : sampled_slots(model)) {
+    const auto* digital = dynamic_cast<const DigitalPart*>(model.loads()[slot.load].load->discrete());
+    if (digital != nullptr && digital->waits(std::span(state.y).subspan(slot.first, slot.count)))
+      renewal(state, slot, {});
+  }
+  return state;
+}
+
 }  // namespace
 
 Configuration::Configuration(const Prepared& prepared, State state, const Holding& holding)
@@ -60,7 +78,7 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
   const Model& model = prepared_.model();
   for (const LoadSlot& slot : layout().discrete_slots) require_no_switches(prepared.scene.file, model, slot);
   model.prescribe(state_);
-  state_ = begun(model, *prepared_.equations, std::move(state_));
+  state_ = all_begun(model, *prepared_.equations, std::move(state_));
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];
     for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;

@@ -1,5 +1,6 @@
 #include "withy/study/equilibrium.hpp"
 
+#include "withy/core/analysis/sliding.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/bent.hpp"
 #include "withy/study/sampled_steady.hpp"
@@ -23,12 +24,19 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
   }
   if (found.steady.converged) found.bent = bent_text(c, state);
   found.against = deflections_against_next(c, found.steady, holding, registry);
-  if (found.stays) return found;
+  if (found.stays) {
+    Configuration about = c;
+    about.set_state(state);
+    if (found.steady.converged) found.stability = stability_of(about);
+    return found;
+  }
   found.passing = moving_freely(c, state);
   found.instant = !found.passing.empty() || !turn.uneven.empty();
   found.changing = !found.passing.empty() ? passing_text(found.passing)
-                   : !turn.uneven.empty()
-                       ? uneven_text(turn.uneven)
+                   : !turn.uneven.empty() ? uneven_text(turn.uneven)
+                   : slides(c.dynamics(), state)
+                       ? "Hinges slide and what acts on the free coordinates changes on the way: this state is steady "
+                         "at this place alone."
                        : "The hinges turn and what acts on the free coordinates turns with them (gravity in the plane "
                          "of rotation, as a rule): this state is steady at this angle alone.";
   return found;

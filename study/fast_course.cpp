@@ -77,23 +77,29 @@ Course accelerations_of(const Motion& motion) {
   return [&motion](double t) { return Eigen::VectorXd::Constant(1, motion.at(t).acceleration); };
 }
 
+/// What a course does. Of what samples of it tell the period is known to an eighth, of a clock to the last bit.
+struct Does {
+  const char* what;
+  bool roughly;
+};
+constexpr Does swings_to_and_fro{"goes to and fro", true}, is_clocked{"is sampled", false};
+
 /// What is told of a course, after what it does and how often.
 using Rest = std::function<std::string(double period)>;
 
-FastCourse told(bool of_motion, const std::string& name, double period, const char* does, const Rest& rest) {
+FastCourse told(bool of_motion, const std::string& name, double period, const Does& does, const Rest& rest) {
   return {of_motion, name, period,
-          fmt::format("{} '{}' {} every {:.2g} s, whatever moves, {}", of_motion ? "motion" : "load", name, does,
-                      period, rest(period))};
+          fmt::format("{} '{}' {} every {:.2g} s{}, whatever moves, {}", of_motion ? "motion" : "load", name, does.what,
+                      period, does.roughly ? " or so" : "", rest(period))};
 }
 
 /// The first motion, else load, that goes to and fro in about `longest` [s] or less.
 std::optional<FastCourse> swinging(const Prepared& prepared, const State& state, double longest, const Rest& rest) {
   const Model& model = prepared.model();
-  constexpr const char* swings = "goes to and fro";
   for (const MotionNode& node : model.motions())
     if (!node.motion->locks())
       if (const Found f = fastest_period(accelerations_of(*node.motion), state.time, longest); f.period > 0)
-        return told(true, node.name, f.period, swings, rest);
+        return told(true, node.name, f.period, swings_to_and_fro, rest);
   if (model.loads().empty()) return {};
   Work work = prepared.equations->make_work();
   const Found of_all =
@@ -103,7 +109,7 @@ std::optional<FastCourse> swinging(const Prepared& prepared, const State& state,
     if (const double period =
             period_in(efforts_of(prepared, state, static_cast<int>(l), work), state.time, of_all.apart);
         period > 0)
-      return told(false, model.loads()[l].name, period, swings, rest);
+      return told(false, model.loads()[l].name, period, swings_to_and_fro, rest);
   return {};
 }
 
@@ -134,7 +140,7 @@ std::optional<FastCourse> fast_course(const Prepared& prepared, const State& sta
   for (const LoadNode& node : prepared.model().loads())
     if (const DiscretePart* part = node.load->discrete();
         part != nullptr && left / allowed > part->period() && part->period() > 0)
-      return told(false, node.name, part->period(), "is sampled", rest);
+      return told(false, node.name, part->period(), is_clocked, rest);
   // Adaptive steps of the usual tolerances, some ten in a period, are more than those allowed.
   constexpr double steps_in_a_period = 10;
   return swinging(prepared, state, steps_in_a_period * left / allowed, rest);

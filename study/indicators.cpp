@@ -18,18 +18,34 @@ bool one_direction(const BodyValidity& body) {
   return body.highest.size() == 1 && body.highest.front().family.starts_with("bending_");
 }
 
+/// Between segments kinematics is exact, so that the load of each counts by itself; unless it is truncated: then what
+/// lies between them is no better than within one piece, and the load of the whole counts.
+void add_load(std::vector<Indicator>& all, const BodyNode& node, const BodyValidity& b, const Terms& own) {
+  const auto add = [&](const std::string& name, const LoadRatio& load) {
+    all.push_back({"load of '" + name + "' over its buckling load", load.size(), load_limit,
+                   "the second-order terms left out act"});
+  };
+  const bool as_one = node.segment && node.segment->body != nullptr && own.truncation != Truncation::none;
+  if (!as_one) add(b.name, b.load);
+  if (as_one && node.segment->index == 0) add(node.segment->whole, b.whole);
+}
+
 void add_body(std::vector<Indicator>& all, const Scene& scene, const BodyValidity& b, const Terms& own,
               const RunSummary& summary) {
+  const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
   if (!second_order(own)) {
     all.push_back({"rate of '" + b.name + "' over its fundamental frequency", b.rate_ratio,
                    rate_limit(own, one_direction(b)), "frequencies of vibration are 1 % wrong"});
-    all.push_back({"load of '" + b.name + "' over its buckling load", b.load.size(), load_limit,
-                   "the second-order terms left out act"});
+    add_load(all, node, b, own);
   }
-  const auto d = summary.peak_deflection_ratio.find(b.name);
-  if (d != summary.peak_deflection_ratio.end() && own.strain != StrainOrder::exact)
-    all.push_back({deflection_name(b) + " of '" + b.name + "' over its length", d->second, deflection_limit,
+  const std::optional<Bend> bend = greatest_bend(b, summary);
+  if (bend && own.strain != StrainOrder::exact) {
+    all.push_back({deflection_name(b) + " of '" + b.name + "' over its length", bend->deflection, deflection_limit,
                    "deflections are not small"});
+    if (bend->bent() && bend->by_angle())
+      all.push_back({"angle that " + measured_name(b) + " of '" + b.name + "' turns by while it is bent", bend->angle,
+                     angle_limit, "angles are not small"});
+  }
   if (needs_no_modes(scene, b, summary)) return;
   for (const HighestMode& h : b.highest) {
     if (h.modes > 1)
@@ -51,9 +67,22 @@ void add_step(std::vector<Indicator>& all, const Scene& scene, const RunSummary&
 
 }  // namespace
 
+std::string measured_name(const BodyValidity& body) {
+  std::string name = MeasuredPlace{body.station, {}}.in_words();
+  for (const std::string& station : body.beside) name += ", " + station;
+  return body.beside.empty() ? name : "what moves most of " + name;
+}
+
 std::string deflection_name(const BodyValidity& body) {
-  if (body.station == "tip") return "tip deflection";
-  return "deflection of " + MeasuredPlace{body.station, {}}.in_words();
+  if (body.station == "tip" && body.beside.empty()) return "tip deflection";
+  return "deflection of " + measured_name(body);
+}
+
+std::optional<Bend> greatest_bend(const BodyValidity& body, const RunSummary& summary) {
+  const auto deflection = summary.peak_deflection_ratio.find(body.name);
+  const auto angle = summary.peak_section_angle.find(body.name);
+  if (deflection == summary.peak_deflection_ratio.end()) return {};
+  return Bend{deflection->second, angle == summary.peak_section_angle.end() ? 0 : angle->second};
 }
 
 std::string before_mode(const std::string& family) { return family == "mode" ? "" : family + ' '; }

@@ -8,6 +8,7 @@
 
 #include "withy/core/plugin/terms.hpp"
 #include "withy/core/simulation/simulate.hpp"
+#include "withy/core/simulation/tips.hpp"
 #include "withy/scene/scene.hpp"
 
 namespace withy::study {
@@ -21,8 +22,13 @@ struct Indicator {
   [[nodiscard]] double use() const { return value / limit; }
 };
 
+/// "the tip", or what stands for it: "station '21'", "what moves most of the tip, left, right".
+std::string measured_name(const BodyValidity& body);
 /// "tip deflection", or of what stands for the tip: "deflection of station '21'".
 std::string deflection_name(const BodyValidity& body);
+
+/// How far a body was bent where it is measured; nothing where that is not known.
+std::optional<Bend> greatest_bend(const BodyValidity& body, const RunSummary& summary);
 
 /// What the modes of a family are called before the word "mode": "bending_y ", and nothing of modes without a family,
 /// whose name is "mode" itself.

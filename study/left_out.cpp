@@ -21,7 +21,8 @@ std::string left_out(const Terms& terms) {
       return terms.strain == StrainOrder::linear ? "second-order kinematics, and all beyond the first order of the "
                                                    "kinetic energy in the elastic coordinates"
                                                  : "all beyond the first order of the kinetic energy in the elastic "
-                                                   "coordinates, stiffening by rotation too";
+                                                   "coordinates, stiffening by rotation too: what a hinge lets flap "
+                                                   "softens as it spins";
     case Truncation::none:
       break;
   }

@@ -99,6 +99,7 @@ LinearModel about(const Configuration& c, const SmallMotions& motions, const Sam
   for (const Eigen::Index s : motions.free())
     linear.accelerations.emplace_back(c.layout().speed_names[static_cast<std::size_t>(s)], motions.accelerations()[s]);
   linear.changing = changing_loads(c);
+  linear.frozen = check_turn(c.dynamics(), c.state(), c.held()).periodic();
   linear.equilibrium = at_rest(c) && is_steady(c) && uneven_motions(c.dynamics(), c.state(), c.held()).empty();
   return linear;
 }
@@ -118,8 +119,14 @@ void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearM
 }
 
 std::string note_of_changing(const LinearModel& linear, double time) {
-  if (linear.changing.empty()) return {};
-  return fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
+  std::string note;
+  if (linear.frozen)
+    note =
+        "the equations change as hinges move: these are those of one instant and tell no stability (withy modes "
+        "--floquet looks at a whole turn)";
+  if (linear.changing.empty()) return note;
+  return note + (note.empty() ? "" : "; ") +
+         fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
                      quoted_list(linear.changing), time);
 }
 

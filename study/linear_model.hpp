@@ -23,6 +23,8 @@ struct LinearModel {
   LinearSystem system;
   std::vector<std::pair<std::string, double>> accelerations;  ///< of the free speeds at the state
   bool equilibrium = false;                                   ///< nothing that is free moves or begins to
+  /// A is that of one place of hinges that move, and changes as they go on: it tells no stability.
+  bool frozen = false;
   std::vector<std::string> changing;  ///< loads whose gain changes with time by itself: it is that at the state's time
   std::string derivatives;            ///< how A was found
   std::string output_derivatives;     ///< how C and D were
@@ -43,7 +45,8 @@ struct Ports {
 /// singular.
 LinearModel linear_model(const Configuration& configuration, const Ports& ports);
 
-/// What is to be known where loads change their gain with time, in a sentence without a full stop; empty elsewhere.
+/// What is to be known where hinges turn or loads change their gain with time, in a sentence without a full stop; empty
+/// elsewhere.
 std::string note_of_changing(const LinearModel& linear, double time);
 
 }  // namespace withy::study

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "withy/core/analysis/coupled_modes.hpp"
+#include "withy/core/analysis/still_equations.hpp"
 #include "withy/study/bent.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/sampled_loads.hpp"
@@ -35,8 +36,14 @@ void find_sampled_modes(const Configuration& c, const Tangents& tangents, ModesA
     return MotionOverPeriod{course.fastest, std::move(course.times), std::move(course.weights),
                             std::move(course.motions)};
   };
+  const Eigen::Index n = motions.size(), states = n - 2 * masses.size();
+  const Eigen::MatrixXd by_held = sampled.moved(0 * sampled.efforts());
+  const Eigen::MatrixXd unheld =
+      unheld_motions(tangents, c.held(),
+                     {sampled.efforts(), by_held.bottomRows(states), sampled.renewal(held).bottomRows(sampled.size())});
   MapModes found = modes_of_map(
-      {sampled.map(held).first, sampled.period(), balancing_units(motions.A(), masses), masses, between}, c.held());
+      {sampled.map(held).first, sampled.period(), balancing_units(motions.A(), masses), masses, unheld, between},
+      c.held());
   at.modes = std::move(found.modes);
   at.forgotten = found.gone;
   at.period = sampled.period();
@@ -68,7 +75,10 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
     at.bent = bent_text(c, state);
   }
   try {
-    const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
+    // A state that somebody gives may be one of a motion: what accelerates bears on its small motions.
+    const Eigen::VectorXd accelerations = as_is && !is_steady(c) ? withy::accelerations(c.dynamics(), state, c.held())
+                                                                 : c.dynamics().steady_accelerations(state.time);
+    const Tangents tangents = c.dynamics().tangents(state.time, state.y, accelerations);
     if (c.sampled()) {
       Configuration about = c;
       about.set_state(state);
@@ -94,23 +104,41 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
                     const Sweep& sweep, bool as_is, const TurningWish& wish, const Control& control) {
   ModesOf run;
   const bool spins = !sweep.spun().empty(), varies = !sweep.none() && !spins;
-  std::optional<Configuration> c;
+  std::optional<Configuration> base, c, before;
   std::optional<State> last;
   BranchTracker tracker;
-  for (std::size_t k = 0; k < sweep.values.size() && !control.stop(); ++k) {
-    const double value = sweep.values[k];
-    if (!c || varies) {
+  const auto configured = [&](double value) {
+    if (!base || varies) {
       SceneValues here = values;
       if (varies) here.set_text(sweep.path + '=' + sweep.text(value));
       const Prepared prepared = prepare(std::move(here), registry);
-      c.emplace(prepared, start ? start(prepared) : prepared.scene.initial, holding);
+      base.emplace(prepared, start ? start(prepared) : prepared.scene.initial, holding);
     }
-    if (spins) c->spin(read_spin(c->prepared().model(), sweep.spun(), sweep.text(value), "sweep"));
+    Configuration made = *base;
+    if (spins) made.spin(read_spin(made.prepared().model(), sweep.spun(), sweep.text(value), "sweep"));
+    return made;
+  };
+  const auto midway = [&](double a, double b) -> std::optional<Configuration> {
+    try {
+      return configured(0.5 * (a + b));
+    } catch (const SceneError&) {  // of whole numbers there is none
+      return {};
+    }
+  };
+  for (std::size_t k = 0; k < sweep.values.size() && !control.stop(); ++k) {
+    const double value = sweep.values[k];
+    before.swap(c);
+    c.emplace(configured(value));
     if (last && last->y.size() == c->state().y.size()) c->begin_at(*last);
     run.points.push_back(modes_at(*c, as_is, wish));
     ModesAt& at = run.points.back();
     at.value = value;
-    if (at.steady && at.steady->steady.converged) last = at.steady->steady.state;
+    if (at.steady && at.steady->steady.converged) {
+      const State& steady = at.steady->steady.state;
+      if (last && last->y.size() == steady.y.size() && run.points[k - 1].steady->steady.converged)
+        at.jump = jump_between(*before, *last, *c, steady, [&] { return midway(sweep.values[k - 1], value); });
+      last = steady;
+    }
     if (at.problem.empty()) {
       BranchedModes followed = tracker.follow(
           std::move(at.modes), at.masses,

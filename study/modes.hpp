@@ -10,6 +10,7 @@
 
 #include "withy/core/analysis/mode_branches.hpp"
 #include "withy/study/configuration.hpp"
+#include "withy/study/continuation.hpp"
 #include "withy/study/control.hpp"
 #include "withy/study/turning.hpp"
 
@@ -49,6 +50,7 @@ struct ModesAt {
   std::vector<std::string> names;
   Eigen::VectorXd masses;             ///< M_ii, one a speed, zero for states; empty where there are no modes
   std::string problem;                ///< why there are none; empty where there are
+  Jump jump = Jump::none;             ///< of a sweep, from the steady state at the value before
   std::string bent;                   ///< how far the steady state is bent and by what, where that is far; else empty
   std::optional<SteadyFound> steady;  ///< none where the state was taken as it is
   std::shared_ptr<const Model> model;

@@ -167,10 +167,10 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
     throw OptionError("input",
                       "the loop of '" + name + "', which acts without pause, cannot be opened beside sampled ones");
   if (is_sampled && std::abs(sampled.period_of(load) - sampled.period()) > 1e-9 * sampled.period())
-    throw OptionError("input",
-                      fmt::format("load '{}' is sampled each {:g} s, and all loads together repeat each {:g} s: the "
-                                  "loop of the slowest alone can be opened",
-                                  name, sampled.period_of(load), sampled.period()));
+    throw OptionError(
+        "input", fmt::format("load '{}' is sampled each {:g} s, and all loads together repeat each {:g} s: only the "
+                             "loop of a load that is sampled that seldom can be opened",
+                             name, sampled.period_of(load), sampled.period()));
   const auto [first, count] = sampled.held_by(load);
   const bool is_command = is_sampled && hinge.empty() && sampled.own_efforts().middleCols(first, count).isZero(0);
   FedBack all;

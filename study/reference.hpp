@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/simulation/tips.hpp"
 #include "withy/study/control.hpp"
 #include "withy/study/series.hpp"
 #include "withy/study/walk.hpp"
@@ -28,7 +29,7 @@ struct Reference {
   double energy = 0;          ///< greatest kinetic energy at an output [J]
   Distances scales;           ///< what relative errors are shares of
   Distances own;              ///< what the readings may be off by (ModeSeries, ThirdOrder); empty: not known
-  double deflection = 0;      ///< over length, of the bodies whose kinematics is not exact (ThirdOrder)
+  Bend bend = {};             ///< of the bodies whose kinematics is not exact, where most (ThirdOrder)
   double third_order = 0;     ///< share of the scales in `own` that is of it
   Walk walk;
   Readings coarser = {};  ///< of the level before, of the nearest alone

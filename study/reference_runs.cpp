@@ -75,7 +75,7 @@ std::optional<Reference> ReferenceRuns::run(const Point& point) {
   r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
                 {keep, afford, control_.interrupted});
   r.scales = scales(outputs_, r.ranges, r.energy);
-  r.deflection = third_order.deflection();
+  r.bend = third_order.bend();
   r.third_order = third_order.share();
   return ended(point, std::move(r));
 }

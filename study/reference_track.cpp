@@ -7,6 +7,7 @@
 
 #include "withy/core/simulation/instants.hpp"
 #include "withy/study/accuracy.hpp"
+#include "withy/study/third_order.hpp"
 
 namespace withy::study {
 namespace {
@@ -28,7 +29,7 @@ constexpr double radau_weight = 2.4;
 /// The least rung is compared with the reference so many times: each landing costs steps.
 constexpr std::size_t comparisons = 8;
 /// Third-order terms beyond this part of the accuracy are looked at: (deflection over length)² of the range (spin-up:
-/// 0.36 % at 0.057, 0.49 % at 0.067).
+/// 0.36 % at 0.057, 0.49 % at 0.067), or what angles make of it (third_order_share).
 constexpr double worth_a_look = 0.02;
 
 /// Ends of windows [s]: outputs of the run, so that a change of rungs is one.
@@ -86,15 +87,7 @@ class Extremes {
       : outputs_(outputs), track_(track), first_(std::move(first)) {
     raise(first_);
   }
-  void raise(const std::vector<double>& values) {
-    outputs_.raise(values, first_, track_.ranges);
-    for (const Output& o : outputs_.list()) {
-      if (o.measure != Measure::deflection || !(o.floor > 0)) continue;
-      constexpr double floor_of_length = 1e-3;
-      const double d = std::hypot(values[o.at], values[o.at + 1], values[o.at + 2]);
-      track_.deflection = std::max(track_.deflection, floor_of_length * d / o.floor);
-    }
-  }
+  void raise(const std::vector<double>& values) { outputs_.raise(values, first_, track_.ranges); }
 
  private:
   const Outputs& outputs_;
@@ -147,13 +140,16 @@ ReferenceTrack ReferenceTracker::blank() const {
   return track;
 }
 
-/// False where deflections pass a limit, or what goes along beside is far off.
-bool ReferenceTracker::run(ReferenceTrack& track, double most_deflection, bool beside) {
+/// False where bodies bend beyond a limit, or what goes along beside is far off.
+bool ReferenceTracker::run(ReferenceTrack& track, double most_bend, bool beside) {
   const auto integrator = make_integrator(registry_, integrator_, tolerance_);
   const auto following = make_integrator(registry_, integrator_, std::min(looser * tolerance_, 1.0));
   CoarseRun run(prepared_, track.low, track.rung, outputs_, *integrator, start_, end_);
   CoarseRun least(prepared_, 0, 0, outputs_, *following, start_, end_);
   Extremes extremes(outputs_, track, run.read());
+  ThirdOrder third_order(prepared_);
+  third_order.look(start_);
+  const auto look = [&](const State& s) { third_order.look(s); };
   Distances errors = outputs_.none();
   bool good = true;
   for (std::size_t k = 0; good && k < ends_.size(); ++k) {
@@ -161,16 +157,17 @@ bool ReferenceTracker::run(ReferenceTrack& track, double most_deflection, bool b
     WindowTrack window;
     const std::size_t most = beside && track.low != track.rung ? too_many(track.windows.size())
                                                                : std::numeric_limits<std::size_t>::max() / 2;
-    const bool reached = run.track(ends_[k], control_, (end_ - start_.time) / readings, most, window);
+    const bool reached = run.track(ends_[k], control_, (end_ - start_.time) / readings, most, look, window);
     for (const std::vector<double>& values : window.readings)
       if (!values.empty()) extremes.raise(values);
+    track.bend = third_order.bend();
     track.energy = std::max(track.energy, run.kinetic_energy());
     if (!reached) {
       track.problem = control_.stop() ? "interrupted" : "it cannot go on";
       break;
     }
     track.windows.push_back(std::move(window));
-    good = !(track.deflection > most_deflection);
+    good = !(track.bend.size() > most_bend);
     if (!good || !beside) continue;
     WindowTrack along;
     good = least.follow(track.windows.back(), control_, along);
@@ -199,8 +196,8 @@ ReferenceTrack ReferenceTracker::beside_least() {
     track.low = low;
     const bool good = run(track, small_, true);
     if (!good) track.beside.clear();
-    seen_ = std::max(seen_, track.deflection);
-    track.third_order = track.deflection * track.deflection;
+    seen_ = std::max(seen_, track.bend.size());
+    track.third_order = third_order_share(track.bend);
     return good;
   };
   // Where only the correction failed, the reference is made in its own rung.
@@ -212,7 +209,7 @@ ReferenceTrack ReferenceTracker::beside_least() {
 ReferenceTrack ReferenceTracker::highest() {
   ReferenceTrack track = blank();
   if (!(seen_ > small_) && (run(track, small_, false) || !track.problem.empty())) {
-    track.third_order = track.deflection * track.deflection;
+    track.third_order = third_order_share(track.bend);
     return track;
   }
   track = blank();

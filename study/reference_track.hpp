@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/simulation/tips.hpp"
 #include "withy/study/coarse_run.hpp"
 
 namespace withy::study {
@@ -20,11 +21,11 @@ struct ReferenceTrack {
   std::vector<WindowTrack> windows;  ///< they adjoin; fewer than the run's where it ended before
   /// The least rung on the same steps; as many as windows where it went along to the end, else none.
   std::vector<WindowTrack> beside;
-  std::string problem;    ///< why it did; else empty
-  Distances ranges;       ///< greatest distances of outputs from their start
-  double energy = 0;      ///< greatest kinetic energy [J]
-  double deflection = 0;  ///< greatest of a tip over its body's length
-  /// What terms of third order in the deflection may be off by, of its range: the rung drops them and no body offers
+  std::string problem;  ///< why it did; else empty
+  Distances ranges;     ///< greatest distances of outputs from their start
+  double energy = 0;    ///< greatest kinetic energy [J]
+  Bend bend;            ///< where it is most, of bodies whose kinematics is not exact (ThirdOrder)
+  /// What terms of third order may be off by, of the range of deflections: the rung drops them and no body offers
   /// exact kinematics, or they are too small to look at. 0 where the rung is exact.
   double third_order = 0;
 };
@@ -49,7 +50,7 @@ class ReferenceTracker {
 
  private:
   ReferenceTrack blank() const;
-  bool run(ReferenceTrack& track, double most_deflection, bool beside);
+  bool run(ReferenceTrack& track, double most_bend, bool beside);
   /// Whether the accelerations of another rung can be taken once a step: where loads are stiff (radau was chosen) their
   /// difference is too, and it is taken explicitly.
   bool corrects() const { return integrator_ != "radau"; }
@@ -65,13 +66,13 @@ class ReferenceTracker {
   const Control& control_;
   std::vector<std::size_t>& evaluations_;
   std::size_t second_;  ///< the rung of second order
-  double small_;        ///< deflection over length up to which its third order need not be looked at
+  double small_;        ///< size of a bend up to which its third order need not be looked at
   double tolerance_;
   State start_;
   double end_;
   std::vector<double> ends_;    ///< of windows [s]
   std::size_t per_window_ = 0;  ///< evaluations, in the least rung
-  double seen_ = 0;             ///< greatest deflection over length of a tip, of references so far
+  double seen_ = 0;             ///< greatest size of a bend, of references so far
   std::string integrator_;
 };
 

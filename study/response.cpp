@@ -51,10 +51,8 @@ LinearModel model_for(const Configuration& c, const ResponseQuestion& question, 
   return open_loop(c, question.input);
 }
 
-/// Whether a root stands for s = 0.
-bool at_zero(const LinearSystem& s, Complex root) {
-  return s.sampled() ? std::abs(exponent_of(s, root)) <= 1e-7 * pi / s.period : root == 0.0;
-}
+/// Whether a root stands for s = 0: those are found by rank.
+bool at_zero(const LinearSystem& s, Complex root) { return root == (s.sampled() ? 1.0 : 0.0); }
 
 /// At half the rate of the samples, z = −1, where one of the zeros is: no rounding of it.
 void clear_half_rate(Response& r) {
@@ -167,8 +165,9 @@ Response response(const Configuration& c, const ResponseQuestion& question) {
                                r.model.inputs[0].name)
                  : fmt::format("the output {} does not feel the input {} at this state", r.model.outputs[0].name,
                                r.model.inputs[0].name));
-  r.every = poles(s);
-  r.roots = seen_roots(s, r.every, found.zeros);
+  const KnownRoots every = known_poles(s);
+  r.every = every.values;
+  r.roots = seen_roots(s, every, found.zeros);
   const TransferFunction G(s);
   find_static_gain(G, found.gain, r);
   find_participation(found.gain, r);

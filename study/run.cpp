@@ -16,12 +16,14 @@
 #include "withy/study/accuracy.hpp"
 #include "withy/study/fast_course.hpp"
 #include "withy/study/growth.hpp"
+#include "withy/study/indicators.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/output_reader.hpp"
 #include "withy/study/remedy.hpp"
 #include "withy/study/rung_plan.hpp"
 #include "withy/study/sampled_growth.hpp"
 #include "withy/study/step_limit.hpp"
+#include "withy/study/third_order.hpp"
 
 namespace withy::study {
 namespace {
@@ -173,16 +175,19 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
     return "nothing is left out: kinematics is exact and nothing is truncated";
   if (beyond && !beyond->highest) return "not estimated: it was not asked for";
   std::string third = "terms of third order in the deflection are left out";
-  // (deflection over length)² of the range: what second-order kinematics was measured to be off by at a state. What a
-  // motion is off by after a while is more, for frequencies are wrong by that and phases run apart.
+  // What second-order kinematics was measured to be off by at a state (ThirdOrder). What a motion is off by after a
+  // while is more, for frequencies are wrong by that and phases run apart.
   if (!summary.peak_deflection_ratio.empty()) {
-    double deflection = 0;
-    for (const auto& [body, ratio] : summary.peak_deflection_ratio) deflection = std::max(deflection, ratio);
-    const double share = 100 * deflection * deflection;
+    Bend most;
+    for (const BodyValidity& body : summary.validity.bodies)
+      if (const auto bend = greatest_bend(body, summary); bend && bend->size() > most.size()) most = *bend;
+    const double share = 100 * third_order_share(most);
     third += fmt::format(
-        ", about {} % of it at an instant where it is {:.2g} of a body's length; that is no error of the run, which "
-        "grows with time, to many times as much",
-        share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share), deflection);
+        ", about {} % of it at an instant where {}; that is no error of the run, which grows with time, to many times "
+        "as much",
+        share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share),
+        most.bent() && most.by_angle() ? fmt::format("a section of a bent body is turned by {:.2g} rad", most.angle)
+                                       : fmt::format("it is {:.2g} of a body's length", most.deflection));
   }
   if (!beyond) return third + "; not measured, for no model of higher order can treat all bodies of the scene";
   return third +
@@ -256,8 +261,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
     result.summary = run_planned(prepared, settings, plan);
     add_unseen(prepared, result.summary);
     // What is inaccurate here is the choice, and nothing grows.
-    if (result.summary.status != RunStatus::inaccurate)
-      result.summary.message += why_it_grew(prepared, result.summary);
+    if (result.summary.status != RunStatus::inaccurate) result.summary.message += why_it_grew(prepared, result.summary);
     std::optional<ErrorEstimate> estimate = plan.estimate;
     if (estimate) estimate->end = result.summary.final.time;
     result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
@@ -298,7 +302,8 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
 }
 
 std::string outcome_text(const RunSummary& summary) {
-  if (summary.status == RunStatus::completed) return "completed";
+  if (summary.status == RunStatus::completed)
+    return summary.ended_by_event ? fmt::format("completed by an event at {:.4g} s", summary.reached) : "completed";
   return fmt::format("{} at {:.4g} s", name(summary.status), summary.reached);
 }
 

@@ -50,7 +50,7 @@ void check_start(const Prepared& prepared);
 /// \throws SceneError where the scene has no end.
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings = {});
 
-/// "completed", or "diverged at 0.0523 s".
+/// "completed", "completed by an event at 0.56 s", or "diverged at 0.0523 s".
 std::string outcome_text(const RunSummary& summary);
 
 /// The run alone, with no more than its outputs.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,6 +14,7 @@
 #include "withy/study/coarse_run.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/reference_track.hpp"
+#include "withy/study/third_order.hpp"
 
 namespace withy::study {
 namespace {
@@ -220,11 +222,14 @@ void judge(RungPlan& plan, const ReferenceTrack& reference, const Prepared& prep
   if (!reference.problem.empty())
     add(fmt::format("The coarse run in {} ended at t = {:.4g} s: {}. The error beyond is not known.", highest,
                     plan.estimate->distances.until, reference.problem));
-  if (reference.third_order > plan.accuracy)
+  if (reference.third_order > plan.accuracy) {
+    std::string bend = bend_text(reference.bend);
+    bend.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(bend.front())));
     add(
-        fmt::format("Deflections of {:.2g} of a body's length are beyond what {} is good for, about {:.2g} % of their "
-                    "range, and no kinematics is offered that is better.",
-                    reference.deflection, highest, 100 * reference.third_order));
+        fmt::format("{} are beyond what {} is good for, about {:.2g} % of the range of deflections, and no kinematics "
+                    "is offered that is better.",
+                    bend, highest, 100 * reference.third_order));
+  }
   if (plan.use > 1)
     add(fmt::format("The accuracy asked is not held: '{}' is off by {:.2g} times as much.", plan.worst, plan.use));
 }

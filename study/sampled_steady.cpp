@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -60,12 +61,14 @@ class Balance {
 
   /// The change that these equations ask for where so much is left over, in their units.
   [[nodiscard]] Eigen::VectorXd change(const Balance& of) const { return -solver_.solve(rows_.cwiseProduct(of.left_)); }
-  /// Whether nothing is left over but rounding.
+  /// Whether data that are typed with some digits could balance.
   [[nodiscard]] bool balanced() const {
-    if (!singular()) return true;
-    Eigen::VectorXd in_play(J_.rows());
-    in_play << accelerations_in_play(), J_.bottomRows(J_.rows() - m_).cwiseAbs() * sizes();
-    return reaches(scaled(), solver_.rank(), rows_.cwiseProduct(left_), rows_.cwiseProduct(in_play));
+    return !singular() || reaches(scaled(), solver_.rank(), rows_.cwiseProduct(left_), rows_.cwiseProduct(in_play()));
+  }
+  /// Whether what is left over is what rounding leaves of the terms in it: no change makes it less.
+  [[nodiscard]] bool rounding() const {
+    const double share = rounding_of_sums(configuration_.prepared().model().bodies().size());
+    return (left_.array().abs() <= share * in_play().array()).all();
   }
   /// Where a change leads to.
   [[nodiscard]] Configuration moved(const Eigen::VectorXd& change) const {
@@ -108,6 +111,12 @@ class Balance {
   }
 
  private:
+  /// What the terms of what is left over amount to.
+  [[nodiscard]] Eigen::VectorXd in_play() const {
+    Eigen::VectorXd all(J_.rows());
+    all << accelerations_in_play(), J_.bottomRows(J_.rows() - m_).cwiseAbs() * sizes();
+    return all;
+  }
   [[nodiscard]] double size() const {
     double s = 1e-6;
     for (std::size_t i = 0; i < configuration_.layout().positions; ++i)
@@ -219,6 +228,7 @@ SteadyState steady_state_of(const Configuration& c) {
   auto balance = std::make_unique<Balance>(at_rest(c));
   Eigen::VectorXd changed = Eigen::VectorXd::Zero(balance->columns().size());
   Eigen::VectorXd change;
+  double before = std::numeric_limits<double>::infinity();  // size of the change before
   for (; balance->finite() && result.iterations < most_iterations; ++result.iterations) {
     change = balance->change(*balance);
     const Eigen::VectorXd step = balance->columns().cwiseProduct(change);
@@ -227,8 +237,14 @@ SteadyState steady_state_of(const Configuration& c) {
       result.converged = balance->balanced();
       break;
     }
-    auto next = advanced(*balance, change, changed);
-    if (next == nullptr) break;
+    // As find_steady_state: where steps shrink no more, rounding may be all that is left over.
+    const bool shrinks = change.norm() <= 0.25 * before;
+    before = change.norm();
+    auto next = shrinks || !balance->rounding() ? advanced(*balance, change, changed) : nullptr;
+    if (next == nullptr) {
+      result.converged = balance->rounding() && balance->balanced();
+      break;
+    }
     balance = std::move(next);
   }
   const Configuration& found = balance->configuration();

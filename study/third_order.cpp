@@ -1,17 +1,36 @@
 #include "withy/study/third_order.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
 namespace withy::study {
 
-ThirdOrder::ThirdOrder(const Prepared& model) {
-  for (Tip& end : measured_ends(model.model())) {
-    const BodyNode& body = model.model().bodies()[static_cast<std::size_t>(end.tip.body)];
+double third_order_share(const Bend& bend) { return bend.size() * bend.size(); }
+
+std::string bend_text(const Bend& bend) {
+  if (bend.bent() && bend.by_angle()) return fmt::format("sections of a bent body that turn by {:.2g} rad", bend.angle);
+  return fmt::format("deflections of {:.2g} of a body's length", bend.deflection);
+}
+
+ThirdOrder::ThirdOrder(const Prepared& model) : model_(model.model()) {
+  for (Tip& end : measured_ends(model_)) {
+    const BodyNode& body = model_.bodies()[static_cast<std::size_t>(end.tip.body)];
     const Terms terms = body.terms.value_or(model.scene.formulation->terms());
-    if (end.flexible && !end.in_segments() && end.length > 0 && terms.strain != StrainOrder::exact)
+    if (!end.flexible || !(end.length > 0) || terms.strain == StrainOrder::exact) continue;
+    if (!end.in_segments()) {
       ends_.push_back(std::move(end));
+      continue;
+    }
+    for (const int b : model_.segments(end.body)) {
+      const BodyNode& segment = model_.bodies()[static_cast<std::size_t>(b)];
+      Tip own = end;
+      own.root = {b, 0};
+      own.tip = {b, segment.frame("tip")};
+      own.length = segment.body->shape().length;
+      ends_.push_back(std::move(own));
+    }
   }
   if (!ends_.empty()) seen_ = model.equations->make_observation();
 }
@@ -21,7 +40,8 @@ void ThirdOrder::look(const State& state) {
   seen_->observe(state.y);
   for (const Tip& end : ends_) {
     const auto d = withy::deflection(*seen_, end);
-    deflection_ = std::max(deflection_, std::hypot(d[0], d[1], d[2]) / end.length);
+    const Bend now{std::hypot(d[0], d[1], d[2]) / end.length, section_angle(model_, state.y, end)};
+    if (now.size() > bend_.size()) bend_ = now;
   }
 }
 

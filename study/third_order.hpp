@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "withy/core/simulation/tips.hpp"
@@ -10,22 +11,30 @@
 
 namespace withy::study {
 
-/// The share of ranges that terms of third order may have is (deflection over length)² of the body that bends most, of
-/// those whose kinematics is not exact; of bodies in segments the segments bend little.
+/// The share of ranges that terms of third order may have, at the place of a body where it bends most: (deflection over
+/// length)² or, where that is more, the square of half the angle that the section there has turned by (Bend). The
+/// product of a twist twice and a deflection is of third order as that of three deflections is.
+double third_order_share(const Bend& bend);
+/// "deflections of 0.11 of a body's length", "sections of a bent body that turn by 1.2 rad".
+std::string bend_text(const Bend& bend);
+
+/// The share is that of the body that bends most, of those whose kinematics is not exact; of bodies in segments each
+/// segment is looked at by itself, for what lies between them is exact.
 class ThirdOrder {
  public:
   /// The model must outlive the object.
   explicit ThirdOrder(const Prepared& model);
   /// At a state of the run.
   void look(const State& state);
-  /// Greatest deflection over length so far.
-  [[nodiscard]] double deflection() const { return deflection_; }
-  [[nodiscard]] double share() const { return deflection_ * deflection_; }
+  /// Where it was most so far.
+  [[nodiscard]] const Bend& bend() const { return bend_; }
+  [[nodiscard]] double share() const { return third_order_share(bend_); }
 
  private:
+  const Model& model_;
   std::vector<Tip> ends_;
   std::unique_ptr<Observation> seen_;
-  double deflection_ = 0;
+  Bend bend_;
 };
 
 }  // namespace withy::study

@@ -36,6 +36,8 @@ TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control&
   constexpr double long_enough = 0.05;  // s
   RunOptions options = run_options(model.scene);
   options.events.clear();
+  // As the reference: a model that meets an event early would be measured, and cost, up to there alone.
+  options.past_stops = true;
   options.interrupted = control.interrupted;
   watch_poles(model, options);
   TimedRun run;
@@ -102,6 +104,7 @@ void TradeStudy::look_up(std::size_t index) {
 void TradeStudy::find_reference_for(const Point& point) {
   const std::string key = joined(point.over);
   if (known_.contains(key)) return;
+  if (point.over.empty()) require_a_run(base_.scene);
   ReferenceGoal goal;
   // Of all that mean the same, whatever families are compared.
   ReferenceFamilies families = reference_families(candidates_for(base_, registry_, usual_axes()), base_);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/core/analysis/between_instants.hpp"
 #include "withy/core/model/columns.hpp"
 
 namespace withy::study {
@@ -51,9 +52,9 @@ std::string greatest_displacement(const Turn& turn, const Configuration& c) {
     double by = 0;
   };
   std::vector<Farthest> all;
+  const std::vector<double> greatest = greatest_excursions(turn);
   const auto meet = [&](const Column& coordinate, std::size_t at) {
-    double by = 0;
-    for (const State& state : turn.states) by = std::max(by, std::abs(state.y[at] - turn.states[0].y[at]));
+    const double by = greatest[at];
     const auto same = [&](const Farthest& f) { return f.unit == coordinate.unit; };
     auto found = std::find_if(all.begin(), all.end(), same);
     if (found == all.end()) found = all.insert(all.end(), {coordinate.unit, {}, 0});
@@ -76,6 +77,42 @@ std::string greatest_displacement(const Turn& turn, const Configuration& c) {
   return text;
 }
 
+/// The state with everything that is free displaced and moving, no two alike: what a load makes of it shows in its
+/// effort, also where it makes nothing of the state itself.
+State displaced_anyhow(const Configuration& c, State state) {
+  constexpr double far = 1e-2;  // rad, m, and a second of it
+  const Layout& layout = c.layout();
+  Eigen::VectorXd by(static_cast<Eigen::Index>(layout.speeds));
+  for (Eigen::Index s = 0; s < by.size(); ++s) {
+    by[s] = c.held()[static_cast<std::size_t>(s)] ? 0.0 : far * (1 + std::cos(static_cast<double>(s)) / 2);
+    state.y[layout.positions + static_cast<std::size_t>(s)] += by[s];
+  }
+  c.dynamics().displace(state.y, by);
+  return state;
+}
+
+/// The first motion that is another a period later; empty where all repeat.
+std::string motion_not_repeating(const Configuration& c, const State& steady, double period) {
+  constexpr double rounding = 1e-9;
+  for (const MotionNode& node : c.prepared().model().motions()) {
+    if (node.motion->locks()) continue;
+    double rate = 0, acceleration = 0, change = 0, jerk = 0;
+    const auto compare = [&](double share) {
+      const MotionPoint now = node.motion->at(steady.time + share * period),
+                        later = node.motion->at(steady.time + (1 + share) * period);
+      rate = std::max({rate, std::abs(now.rate), std::abs(later.rate)});
+      acceleration = std::max({acceleration, std::abs(now.acceleration), std::abs(later.acceleration)});
+      change = std::max(change, std::abs(later.rate - now.rate));
+      jerk = std::max(jerk, std::abs(later.acceleration - now.acceleration));
+    };
+    for (int k = 0; k < 11; ++k) compare(k / 11.0);
+    for (const double share : in_no_ratio) compare(share);
+    // An acceleration counts by what it makes of the rate within the period.
+    if (change > rounding * rate || jerk > rounding * (acceleration + rate / period)) return node.name;
+  }
+  return {};
+}
+
 /// The first load whose efforts are others a period later with everything as it was; empty where all repeat.
 std::string not_repeating(const Configuration& c, const State& steady, const Turning& turning) {
   constexpr int instants = 11;
@@ -86,8 +123,9 @@ std::string not_repeating(const Configuration& c, const State& steady, const Tur
   std::vector<double> now(model.layout().speeds), later(now.size());
   for (std::size_t load = 0; load < model.loads().size(); ++load) {
     double greatest = 0, change = 0;
-    for (int k = 0; k < instants; ++k) {
-      const State state = carried(model, turning, steady, turning.period * k / instants);
+    for (int k = 0; k < 2 * instants; ++k) {
+      State state = carried(model, turning, steady, turning.period * (k / 2) / instants);
+      if (k % 2 == 1) state = displaced_anyhow(c, std::move(state));
       equations.load_efforts(state.time, state.y, static_cast<int>(load), now, work);
       equations.load_efforts(state.time + turning.period, state.y, static_cast<int>(load), later, work);
       for (std::size_t s = 0; s < now.size(); ++s) {
@@ -115,6 +153,13 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
     if (turning.period == 0) {
       result.problem = turning.problem.empty() ? "nothing turns: spin a hinge (--spin), or give the period (--period)"
                                                : turning.problem;
+      return result;
+    }
+    if (const std::string motion = motion_not_repeating(c, steady, turning.period); !motion.empty()) {
+      result.problem = fmt::format(
+          "motion '{}' moves otherwise {:.6g} s later, and no turn is like the next: give the period after which "
+          "everything repeats (--period)",
+          motion, turning.period);
       return result;
     }
     if (const std::string load = not_repeating(c, steady, turning); !load.empty()) {
@@ -178,7 +223,17 @@ std::string turn_text(const TurningModes& turn) {
   if (!turn.passing.empty()) return passing_text(turn.passing) + no_stability;
   if (!turn.uneven.empty()) return uneven_text(turn.uneven) + no_stability;
   if (!turning.problem.empty())
-    return "Whether the equations change as the hinges turn was not looked at: " + turning.problem + ".";
+    return check.periodic()
+               ? fmt::format(
+                     "The equations of small motions change as the hinges move, by {:.2g} % of their greatest "
+                     "element{}: these are those of one instant and tell no stability. A whole turn is not "
+                     "looked at: {}.",
+                     100 * check.change, check.steady ? "" : ", and this state is balanced at this place alone",
+                     turning.problem)
+               : fmt::format(
+                     "The equations of small motions stay the same over a turn of the slowest hinge; a whole "
+                     "turn is not looked at: {}.",
+                     turning.problem);
   if (turning.period == 0) return {};
   if (!check.periodic())
     return fmt::format("The hinges turn once in {:.6g} s, and the equations of small motions stay the same.",

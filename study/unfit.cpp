@@ -23,4 +23,11 @@ std::vector<Unfit> take_out_unfit(const std::shared_ptr<const Model>& model, Reg
   return unfit;
 }
 
+std::vector<std::string> usual_formulations(const std::shared_ptr<const Model>& model, Registry& registry,
+                                            std::vector<Unfit>& left_out) {
+  std::vector<std::string> usual = {"ruthless", "inconsistent", "consistent", "quadratic"};
+  left_out = take_out_unfit(model, registry, usual);
+  return usual;
+}
+
 }  // namespace withy::study

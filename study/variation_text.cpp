@@ -12,15 +12,27 @@ namespace withy::study {
 namespace {
 constexpr std::size_t most_values = 100000;
 
-/// "15 rpm": a number, and the unit after it.
+/// "15 rpm" or "15rpm", as in scenes: a number, and the unit after it.
 struct RangeEnd {
   std::optional<double> number;
   std::string unit;
 };
 RangeEnd read_end(const std::string& text) {
-  const std::size_t space = text.find_first_of(" \t", text.find_first_not_of(" \t"));
-  const std::size_t unit = space == std::string::npos ? space : text.find_first_not_of(" \t", space);
-  return {plain_number(std::string_view(text).substr(0, space)), unit == std::string::npos ? "" : text.substr(unit)};
+  const auto without_blanks = [](std::string_view part) {
+    const std::size_t first = part.find_first_not_of(" \t"), last = part.find_last_not_of(" \t");
+    return first == std::string_view::npos ? std::string_view() : part.substr(first, last - first + 1);
+  };
+  const std::string_view all = without_blanks(text);
+  // The longest number that it begins with: "1e3 m" is no "1 e3 m".
+  for (std::size_t length = all.size(); length > 0; --length) {
+    const auto number = plain_number(all.substr(0, length));
+    if (!number) continue;
+    const std::string_view unit = without_blanks(all.substr(length));
+    const bool digits = !unit.empty() && std::string_view("0123456789.,:+-").find(unit[0]) != std::string_view::npos;
+    if (digits) return {};
+    return {number, std::string(unit)};
+  }
+  return {};
 }
 }  // namespace
 

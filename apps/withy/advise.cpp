@@ -29,8 +29,8 @@ std::vector<std::string> texts_of(const std::vector<study::Change>& changes) {
 }
 
 ExitStatus advise(const AdviseArguments& arguments) {
-  check_write(arguments.write, arguments);
   const Engine engine(arguments);
+  check_write(arguments.write, arguments, engine);
   const auto folder =
       take_folder(arguments, "advise", provenance_of(engine.scene(), engine.plugins()), {"advice.json", report_name});
   const study::Accuracy accuracy = study::Accuracy::parse(arguments.accuracy);
@@ -51,8 +51,6 @@ ExitStatus advise(const AdviseArguments& arguments) {
   const std::vector<study::Change> new_changes =
       study::new_changes(engine.scene(), advice.choice->point, engine.registry());
   const std::vector<std::string> changes = texts_of(new_changes);
-  if (!arguments.write.empty())
-    write_changed(engine.prepared().values, new_changes, arguments.write, engine.registry());
   const std::string json = json_text(advice_json(question, advice, left_out, changes, scene_lines(changes)));
   const std::string words = advice_text({question, candidates, advice, left_out, changes});
   std::string text = arguments.json ? json : words;
@@ -61,8 +59,11 @@ ExitStatus advise(const AdviseArguments& arguments) {
     write_figures_page(*folder / report_name, engine.prepared().title() + ": advice", words, {advice_picture(advice)});
     if (!arguments.json) text += folder_text(arguments.out);
   }
-  if (!arguments.json && !arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';
   print(text);
+  if (!arguments.write.empty()) {  // once all is told that was found
+    write_changed(engine.prepared().values, new_changes, arguments.write, engine.registry());
+    if (!arguments.json) print("\nwritten to " + arguments.write + '\n');
+  }
   return ExitStatus::done;
 }
 

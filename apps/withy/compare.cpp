@@ -21,8 +21,6 @@ struct CompareArguments : SceneArguments, OutputArguments {
   std::string over;  ///< `path=value,value,…`: the comparison is made at each value; may be empty
 };
 
-const std::vector<std::string> usual_formulations = {"ruthless", "inconsistent", "consistent", "quadratic"};
-
 ExitStatus compare(const CompareArguments& arguments) {
   const study::Variation variation =
       arguments.over.empty() ? study::Variation{"", {""}} : study::parse_variation(arguments.over);
@@ -32,10 +30,8 @@ ExitStatus compare(const CompareArguments& arguments) {
   const Scene given = make_scene(values, plugins.registry());
   ComparisonQuestion question{arguments.formulations, arguments.reference, arguments.outputs, variation};
   std::vector<study::Unfit> left_out;
-  if (question.formulations.empty()) {
-    question.formulations = usual_formulations;
-    left_out = study::take_out_unfit(given.model, plugins.registry(), question.formulations);
-  }
+  if (question.formulations.empty())
+    question.formulations = study::usual_formulations(given.model, plugins.registry(), left_out);
   const auto provenance = [&](const Scene& scene) { return provenance_of(scene, plugins); };
   const auto folder = take_folder(arguments, "compare", provenance(given), comparison_content(question));
   const std::vector<ComparisonAt> groups =

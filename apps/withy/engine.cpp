@@ -7,7 +7,7 @@
 
 #include "withy/program/log.hpp"
 #include "withy/program/progress.hpp"
-#include "withy/results/output_name.hpp"
+#include "withy/results/scene_edit.hpp"
 #include "withy/scene/asked_outputs.hpp"
 
 namespace withy::app {
@@ -52,10 +52,12 @@ Plugins::Plugins(const CommonArguments& arguments)
   host_.attach(*registry_);
 }
 
-void check_write(const std::string& file, const SceneArguments& arguments, const std::string& also_read) {
-  if (!file.empty() && !arguments.options.overrides.empty())
+void check_write(const std::string& file, const SceneArguments& arguments, const Engine& engine,
+                 const std::string& also_read) {
+  if (file.empty()) return;
+  if (!arguments.options.overrides.empty())
     throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
-  if (!file.empty()) keep_inputs(file, {arguments.scene, also_read});
+  check_written(engine.prepared(), file, also_read, engine.registry());
 }
 
 SceneValues read_values(const SceneArguments& arguments) {
@@ -71,11 +73,6 @@ Engine::Engine(const SceneArguments& arguments, std::size_t threads)
   if (arguments.verbose) log_what_there_is(*this, plugins_.host());
   const std::string refusal = threads > 1 ? study::use_threads(prepared_, threads) : "";
   if (!refusal.empty()) complain("--threads: one evaluates all: " + refusal);
-}
-
-std::string Engine::formulation_summary() const {
-  const auto* plugin = registry().find<Formulation>(scene().formulation_name);
-  return plugin != nullptr ? plugin->summary : std::string();
 }
 
 State Engine::state(const std::string& file) const { return read_state(prepared_, file); }

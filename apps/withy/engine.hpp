@@ -29,10 +29,6 @@ class Plugins {
   std::unique_ptr<Registry> registry_;
 };
 
-/// For commands that write the scene anew, as its file has it. \throws InputError where --set changes it, or it would
-/// take the place of what is read
-void check_write(const std::string& file, const SceneArguments& arguments, const std::string& also_read = {});
-
 /// The values of the scene file, as the command line changes them. \throws SceneError, InputError
 SceneValues read_values(const SceneArguments& arguments);
 
@@ -48,8 +44,6 @@ class Engine {
   [[nodiscard]] const EquationsOfMotion& equations() const { return *prepared_.equations; }
   [[nodiscard]] const Plugins& plugins() const { return plugins_; }
   [[nodiscard]] Registry& registry() const { return plugins_.registry(); }
-  /// The formulation in a sentence.
-  [[nodiscard]] std::string formulation_summary() const;
   /// The state of a file, or the scene's initial state where the name is empty.
   [[nodiscard]] State state(const std::string& file) const;
 
@@ -57,6 +51,11 @@ class Engine {
   Plugins plugins_;
   study::Prepared prepared_;
 };
+
+/// For commands that write the scene anew, as its file has it. \throws InputError, SceneError where --set changes it,
+/// or as check_written
+void check_write(const std::string& file, const SceneArguments& arguments, const Engine& engine,
+                 const std::string& also_read = {});
 
 /// The state of a file for a scene, or the scene's initial state where the name is empty. \throws SceneError,
 /// InputError

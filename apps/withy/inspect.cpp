@@ -14,8 +14,7 @@ ExitStatus inspect(const StateArguments& arguments) {
   std::vector<LoadedPlugin> loaded;
   for (const PluginRecord& r : engine.plugins().host().plugins())
     if (r.state == PluginRecord::State::loaded) loaded.push_back({r.kind + '/' + r.id, r.file.string()});
-  const auto j =
-      inspection_json(engine.prepared(), engine.state(arguments.state), engine.formulation_summary(), loaded);
+  const auto j = inspection_json(engine.prepared(), engine.state(arguments.state), engine.registry(), loaded);
   print(arguments.json ? json_text(j) : inspection_text(engine.scene(), j));
   return ExitStatus::done;
 }

@@ -80,8 +80,8 @@ ExitStatus modes(const ModesArguments& arguments) {
   require_one_configuration(arguments, sweep);
   const std::vector<double> ratios = study::read_damping_ratios(arguments.damp);
   if (!arguments.write.empty() && ratios.empty()) throw InputError("--write writes what --damp finds: give that too");
-  check_write(arguments.write, arguments);
   const Engine engine(arguments);
+  check_write(arguments.write, arguments, engine);
   const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
                                   {"modes.json", "modes.csv", "modes.svg", "blades.csv", "blades.svg", report_name});
   const study::ModesFound all = found(engine, arguments, sweep);
@@ -93,8 +93,6 @@ ExitStatus modes(const ModesArguments& arguments) {
     masses = study::effective_masses(steady_configuration(engine, arguments, first));
   if (first.problem.empty() && !ratios.empty())
     damping = study::mounted_damping(steady_configuration(engine, arguments, first), engine.registry(), ratios);
-  if (damping && !arguments.write.empty())
-    write_changed(engine.prepared().values, damping->changes, arguments.write, engine.registry());
   nlohmann::ordered_json j = modes_study_json(arguments.scene, sweep, all);
   if (masses) j["effective_mass"] = effective_mass_json(*masses);
   if (damping) j["damping"] = mounted_damping_json(*damping);
@@ -106,8 +104,11 @@ ExitStatus modes(const ModesArguments& arguments) {
     print(modes_study_text(arguments.scene, sweep, all, arguments.count, arguments.poles));
     if (masses) print('\n' + effective_mass_text(*masses));
     if (damping) print('\n' + mounted_damping_text(*damping));
-    if (damping && !arguments.write.empty()) print("\nwritten to " + arguments.write + '\n');
     if (!arguments.out.empty()) print(folder_text(arguments.out));
+  }
+  if (damping && !arguments.write.empty()) {  // once all is told that was found
+    write_changed(engine.prepared().values, damping->changes, arguments.write, engine.registry());
+    if (!arguments.json) print("\nwritten to " + arguments.write + '\n');
   }
   const std::vector<std::string> problems = study::modes_problems(all.runs, sweep);
   for (const std::string& problem : problems) complain(problem);

@@ -7,6 +7,7 @@
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/trade_files.hpp"
 #include "withy/results/trade_text.hpp"
+#include "withy/study/accuracy.hpp"
 
 namespace withy::app {
 
@@ -18,11 +19,15 @@ std::vector<study::Point> points_of(study::Axes axes, const std::vector<std::str
 namespace {
 
 ExitStatus trade(const TradeArguments& arguments) {
+  if (!arguments.limit.empty() && !arguments.accuracy.empty())
+    throw InputError("--accuracy names the cheapest models of a trade; with --limit there is none");
   if (!arguments.limit.empty()) return trade_threshold(arguments);
   if (arguments.measure != "runs" || !arguments.lock.empty() || !arguments.spin.empty())
     throw InputError(
         "--measure frequencies, --lock and --spin go with --limit; frequencies over a range are what "
         "withy modes --sweep shows");
+  const std::vector<double> shares =
+      arguments.accuracy.empty() ? usual_shares : study::read_shares(arguments.accuracy, "accuracy");
   const Engine engine(arguments);
   const std::vector<study::Point> points = points_of(arguments.axes, arguments.over, engine);
   std::optional<TradeFolder> store;
@@ -35,8 +40,9 @@ ExitStatus trade(const TradeArguments& arguments) {
   const auto results = study.results();
   const auto front = study::pareto_front(results);
   const std::string title = engine.prepared().title();
-  const nlohmann::ordered_json j = trade_json(engine.scene(), study, results, front);
-  std::string text = arguments.json ? json_text(j) : trade_text(title, study, results, front, engine.registry());
+  const nlohmann::ordered_json j = trade_json(engine.scene(), study, results, front, shares);
+  std::string text =
+      arguments.json ? json_text(j) : trade_text(title, study, results, front, engine.registry(), shares);
   if (!arguments.out.empty()) {
     write_trade(arguments.out, engine.prepared(), j, results, front, engine.registry(), arguments.plugin_directories);
     if (!arguments.json) text += folder_text(arguments.out, "trade.csv, trade.svg and trade.json");
@@ -57,6 +63,8 @@ void add_trade(Options& o, TradeArguments& a) {
          "Integrators with a relative tolerance; default: dopri5,imex");
   o.list("--tolerances", a.axes.tolerances, "R,R,...", "Relative tolerances; default: 1e-4,1e-6");
   o.repeated("--over", a.over, "PATH=VALUE,VALUE,...", "Trade at each of these values of the scene; repeatable");
+  o.list("--accuracy", a.accuracy, "SHARE,...",
+         "Errors, of each output's own range, that the cheapest model is named of; default: 10%,1%,0.1%");
   o.value("--limit", a.limit, "SHARE",
           "Find where along --over PATH=FROM:TO[:COUNT] each model's error passes this share, as 1%");
   o.value("--measure", a.measure, "WHAT", "With --limit: errors of runs, or of frequencies")

@@ -24,10 +24,7 @@ struct Question {
 
 Question read_question(const TradeArguments& arguments) {
   Question q;
-  const study::Accuracy limit = study::Accuracy::parse(arguments.limit, "limit");
-  if (!limit.share || limit.angle || limit.length)
-    throw InputError("--limit: got '" + arguments.limit + "'; need a relative error, as 1% or 0.01");
-  q.limit = *limit.share;
+  q.limit = study::read_shares({arguments.limit}, "limit").front();
   q.axes = arguments.axes;
   for (const std::string& over : arguments.over) {
     const bool range = over.find(':') != std::string::npos;

@@ -18,8 +18,8 @@ struct TuneArguments : SceneArguments, OutputArguments {
 };
 
 ExitStatus tune(const TuneArguments& arguments) {
-  check_write(arguments.write, arguments, arguments.question.data);
   const Engine engine(arguments);
+  check_write(arguments.write, arguments, engine, arguments.question.data);
   const std::string title = engine.prepared().title();
   const auto folder =
       take_folder(arguments, "tune", provenance_of(engine.scene(), engine.plugins()), campaign::tune_content());
@@ -33,12 +33,12 @@ ExitStatus tune(const TuneArguments& arguments) {
     complain(title + ": no fit: " + result.trouble);
     return ExitStatus::stopped;
   }
-  const SceneValues& scene = engine.prepared().values;
-  if (!arguments.write.empty()) write_changed(scene, fitted_changes(scene, result), arguments.write, engine.registry());
-  std::string text = tune_text(result, title);
-  if (folder != nullptr) text += folder_text(arguments.out);
-  if (!arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';
-  if (!arguments.json) print(text);
+  if (!arguments.json) print(tune_text(result, title) + (folder != nullptr ? folder_text(arguments.out) : ""));
+  if (!arguments.write.empty()) {  // once all is told that was found
+    const SceneValues& scene = engine.prepared().values;
+    write_changed(scene, fitted_changes(scene, result), arguments.write, engine.registry());
+    if (!arguments.json) print("\nwritten to " + arguments.write + '\n');
+  }
   return result.converged() ? ExitStatus::done : ExitStatus::stopped;
 }
 

@@ -7,6 +7,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "withy/core/shape/held_section.hpp"
+#include "withy/core/shape/section_fields.hpp"
+
 namespace withy {
 namespace {
 
@@ -66,7 +69,11 @@ class SidBody final : public Body {
     measured_station_ = node("tip") ? "tip" : shape_.most_compliant(nodes_);
     shape_.damping = Eigen::MatrixXd::Zero(n, n);
     if (options.damping) {
-      shape_.damping = options.damping->matrix(shape_.stiffness, 0.5 * (data.Me.m0 + data.Me.m0.transpose()));
+      // Held at its root: a node that modes turn takes the whole body with it.
+      const HeldSection root{root_};
+      shape_.damping = options.damping->matrix(shape_.stiffness, moved_by_modes(root_)
+                                                                     ? modal_mass(shape_, root)
+                                                                     : 0.5 * (data.Me.m0 + data.Me.m0.transpose()));
     } else if (!data.De.absent()) {
       shape_.damping = 0.5 * (data.De.m0 + data.De.m0.transpose());
     }

@@ -7,24 +7,18 @@
 #include <stdexcept>
 #include <utility>
 
+#include "withy/core/analysis/eigenpairs.hpp"
 #include "withy/core/analysis/linear_system.hpp"
+#include "withy/core/analysis/still_equations.hpp"
 #include "withy/core/analysis/unheld.hpp"
 
 namespace withy {
 namespace {
 
 using Complex = std::complex<double>;
-using Solver = Eigen::EigenSolver<Eigen::MatrixXd>;
 
 /// Of the greatest multiplier: a pair of smaller ones is found with half of the digits that these have left.
 constexpr double least_multiplier = 1e-7;
-
-Solver decomposed(const Eigen::MatrixXd& A) {
-  if (!A.allFinite()) throw std::domain_error("the derivatives at this state are not finite");
-  Solver solver(A);
-  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
-  return solver;
-}
 
 /// An eigenvalue with its vectors.
 struct CoupledRoot {
@@ -32,50 +26,18 @@ struct CoupledRoot {
   Eigen::VectorXcd right, left;
 };
 
-/// Roots of A but for so many at zero, in the order of |λ|.
-std::vector<CoupledRoot> roots_beside_zeros(const Eigen::MatrixXd& A, std::size_t zeros) {
-  const Solver solver = decomposed(A);
-  const Eigen::MatrixXcd z = solver.eigenvectors(), w = left_vectors(A, solver.eigenvalues());
+/// Roots but for those at zero, in the order of |λ|. They are found where what nothing holds is gone: beside it a
+/// vector would have any part of it that rounding brings in.
+std::vector<CoupledRoot> roots_beside_zeros(const Unchained& unchained) {
+  const Eigenpairs found = eigenpairs(unchained.matrix());
+  const Eigen::MatrixXcd z = unchained.vectors(found.values, found.vectors),
+                         w = unchained.left_vectors(left_vectors(unchained.matrix(), found.values));
   std::vector<CoupledRoot> roots;
-  for (Eigen::Index i = 0; i < A.rows(); ++i) roots.push_back({solver.eigenvalues()[i], z.col(i), w.col(i)});
+  for (Eigen::Index i = 0; i < found.values.size(); ++i) roots.push_back({found.values[i], z.col(i), w.col(i)});
   std::stable_sort(roots.begin(), roots.end(),
                    [](const CoupledRoot& a, const CoupledRoot& b) { return std::abs(a.value) < std::abs(b.value); });
-  roots.erase(roots.begin(), roots.begin() + static_cast<std::ptrdiff_t>(zeros));
   return roots;
 }
-
-/// What nothing holds: directions that A takes to nothing, to what derivatives are known to at the worst. Those that A
-/// itself leads to are ends of chains, two zeros each: they go on at any rate.
-struct Unheld {
-  std::vector<Eigen::VectorXd> directions;
-  std::vector<Eigen::Index> rows;  ///< in which the direction alone moves
-  std::size_t pairs = 0;           ///< the first ones: of two zeros
-
-  explicit Unheld(const Eigen::MatrixXd& A) {
-    if (A.rows() == 0) return;
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::VectorXd& values = svd.singularValues();
-    const Eigen::Index count = (values.array() <= 1e-11 * values[0]).count();
-    if (count == 0) return;
-    const Eigen::MatrixXd N = svd.matrixV().rightCols(count);
-    // What A leads to is seen by no left direction.
-    const Eigen::JacobiSVD<Eigen::MatrixXd> seen(svd.matrixU().rightCols(count).transpose() * N, Eigen::ComputeFullV);
-    const Eigen::Index alone = (seen.singularValues().array() > 1e-6).count();
-    const Apart chained(N * seen.matrixV().rightCols(count - alone));
-    add(chained);
-    pairs = directions.size();
-    add(Apart(N * seen.matrixV().leftCols(alone), &chained));
-  }
-  [[nodiscard]] std::size_t zeros() const { return directions.size() + pairs; }
-
- private:
-  void add(const Apart& found) {
-    for (std::size_t k = 0; k < found.rows.size(); ++k) {
-      directions.emplace_back(found.columns.col(static_cast<Eigen::Index>(k)));
-      rows.push_back(found.rows[k]);
-    }
-  }
-};
 
 /// Makes modes of eigenvectors.
 class Naming {
@@ -123,23 +85,33 @@ class Naming {
   Eigen::VectorXd units_;
 };
 
-/// The modes at zero of a balanced matrix.
-struct Zeros {
+/// The modes at zero. Directions that end chains have two zeros each: they go on at any rate.
+std::vector<Mode> modes_at_zero(const Unchained& unchained, const Eigen::MatrixXd& unheld, const Naming& naming) {
   std::vector<Mode> modes;
-  std::size_t count = 0;  ///< of eigenvalues
-
-  Zeros(const Eigen::MatrixXd& balanced, const Naming& naming) {
-    const Unheld unheld(balanced);
-    for (std::size_t i = 0; i < unheld.rows.size(); ++i)
-      modes.push_back(naming.unheld(unheld.directions[i], unheld.rows[i], i >= unheld.pairs));
-    // Chains of more than two, as of the integral of a free coordinate, have more zeros, which show nothing else.
-    count = modes.empty() ? 0 : std::max(unheld.zeros(), zeros_of(balanced));
-    for (std::size_t i = unheld.zeros(); i < count; ++i) {
-      modes.push_back(modes.back());
-      modes.back().single = true;
-    }
+  if (unheld.cols() == 0) return modes;
+  // Of the directions, in their own coordinates: first those that end chains.
+  Eigen::MatrixXd apart = Eigen::MatrixXd::Identity(unheld.cols(), unheld.cols());
+  Eigen::Index pairs = 0;
+  if (unchained.led_to().cols() > 0) {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> ends(
+        unheld.colPivHouseholderQr().solve(unchained.led_to().colwise().normalized()), Eigen::ComputeFullU);
+    apart = ends.matrixU();
+    pairs = ends.rank();
   }
-};
+  const auto add = [&](const Apart& found, bool single) {
+    for (std::size_t k = 0; k < found.rows.size(); ++k)
+      modes.push_back(naming.unheld(found.columns.col(static_cast<Eigen::Index>(k)), found.rows[k], single));
+  };
+  const Apart chained(unheld * apart.leftCols(pairs));
+  add(chained, false);
+  add(Apart(unheld * apart.rightCols(unheld.cols() - pairs), &chained), true);
+  // Chains of more than two, as of the integral of a free coordinate, have more zeros, which show nothing else.
+  for (Eigen::Index i = unheld.cols() + pairs; i < unchained.directions().cols(); ++i) {
+    modes.push_back(modes.back());
+    modes.back().single = true;
+  }
+  return modes;
+}
 
 /// Of λ + 2πik/T that in which most of the kinetic energy Σ M |λ δ|² is over a period; δ e^{−λt} is periodic. Of a real
 /// multiplier the lowest one, unless what vibrates in step with the samples has clearly more: what is held between
@@ -169,13 +141,12 @@ Complex with_most_energy(Complex lambda, bool single, const MotionOverPeriod& mo
 }  // namespace
 
 Eigen::MatrixXcd left_vectors(const Eigen::MatrixXd& A, const Eigen::VectorXcd& values) {
-  const Solver solver = decomposed(A.transpose());
-  const Eigen::MatrixXcd all = solver.eigenvectors();
+  const Eigenpairs all = eigenpairs(A.transpose());
   Eigen::MatrixXcd left(A.rows(), values.size());
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     Eigen::Index nearest = 0;
-    (solver.eigenvalues().array() - values[i]).abs().minCoeff(&nearest);
-    left.col(i) = all.col(nearest);
+    (all.values.array() - values[i]).abs().minCoeff(&nearest);
+    left.col(i) = all.vectors.col(nearest);
   }
   return left;
 }
@@ -197,9 +168,10 @@ std::vector<Mode> modes_with_states(const Tangents& tangents, const Held& held) 
   const Eigen::VectorXd units = balancing_units(A, tangents.mass.diagonal()(free).cwiseAbs());
   const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
   const Naming naming(held, units.cwiseInverse());
-  Zeros zeros(balanced, naming);
-  std::vector<Mode> modes = std::move(zeros.modes);
-  for (const CoupledRoot& root : roots_beside_zeros(balanced, zeros.count))
+  const Eigen::MatrixXd unheld = units.asDiagonal() * unheld_motions(tangents, held);
+  const Unchained unchained(balanced, unheld);
+  std::vector<Mode> modes = modes_at_zero(unchained, unheld, naming);
+  for (const CoupledRoot& root : roots_beside_zeros(unchained))
     if (!(root.value.imag() < 0)) modes.push_back(naming.mode(root, root.value.imag() == 0));
   sort_modes(modes);
   return modes;
@@ -215,13 +187,14 @@ MapModes modes_of_map(const PeriodMap& of, const Held& held) {
   };
   // What stays as it is, e^{λT} = 1, is zero in these rates.
   const Eigen::MatrixXd rates = (of.map - Eigen::MatrixXd::Identity(n, n)) / of.period;
-  units = units.cwiseQuotient(balance_of_states(in_units(rates))).eval();
-  const Eigen::MatrixXd balanced = in_units(rates);
+  // Motions have units that do for their equations: what nothing holds would be given one by rounding.
+  units = units.cwiseQuotient(balance_of_states(in_units(rates), of.units.size())).eval();
   const Naming naming(held, units.cwiseInverse());
-  Zeros zeros(balanced, naming);
-  MapModes found{std::move(zeros.modes), zeros_of(in_units(of.map))};
+  const Eigen::MatrixXd unheld = units.asDiagonal() * of.unheld;
+  const Unchained unchained(in_units(rates), unheld);
+  MapModes found{modes_at_zero(unchained, unheld, naming), zeros_of(in_units(of.map))};
 
-  std::vector<CoupledRoot> roots = roots_beside_zeros(balanced, zeros.count);
+  std::vector<CoupledRoot> roots = roots_beside_zeros(unchained);
   const auto multiplier = [&](const CoupledRoot& r) { return 1.0 + of.period * r.value; };
   std::stable_sort(roots.begin(), roots.end(), [&](const CoupledRoot& a, const CoupledRoot& b) {
     return std::abs(multiplier(a)) > std::abs(multiplier(b));

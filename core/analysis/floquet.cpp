@@ -15,13 +15,19 @@ namespace withy {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr int fewest_steps = 64, most_steps = 1 << 17;
+constexpr int most_steps = 1 << 17;
 /// Steps times the cube of rows: some ten seconds.
 constexpr double most_work = 1e9;
 /// What halving the steps may still change of the greatest element.
 constexpr double followed = 1e-6;
-/// Instants of a period at which eigenfunctions are looked at.
-constexpr int instants = 64;
+/// Instants of a period at which eigenfunctions are looked at, and the fewest steps: a power of two, and more than the
+/// samples of A, whose highest harmonic then takes two steps and more to go round. On longer steps two numbers of them
+/// could agree and both not see it.
+int fewest(const PeriodicMatrix& A) {
+  int count = 64;
+  while (count < A.samples()) count *= 2;
+  return count;
+}
 
 Eigen::MatrixXd commutator(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a * b - b * a; }
 
@@ -47,7 +53,7 @@ Multipliers multipliers(const Eigen::MatrixXd& product) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-/// What is seen of the eigenfunctions over a turn: displacements at `instants` equal intervals, and mean frequencies.
+/// What is seen of the eigenfunctions over a turn: displacements at equal intervals, and mean frequencies.
 struct Seen {
   std::vector<Eigen::MatrixXcd> displacements;  ///< of p(t): a column a mode
   Eigen::VectorXd frequency;  ///< [rad/s] mean of Im (δᴴ W δ̇)/(δᴴ W δ): of all harmonics, by share
@@ -71,7 +77,7 @@ Seen look(const PeriodicMatrix& A, const Multipliers& m, const Eigen::VectorXcd&
       turned[c] += weighted.dot(rates.col(c)).imag();
       size[c] += weighted.dot(at.col(c)).real();
     }
-    if (k % (steps / instants) == 0) seen.displacements.push_back(at);
+    if (k % (steps / fewest(A)) == 0) seen.displacements.push_back(at);
     x = step_matrix(A, k * h, h) * x * back.asDiagonal();
   }
   seen.frequency = turned.cwiseQuotient(size.cwiseMax(1e-300));
@@ -88,6 +94,7 @@ void read_harmonics(const Seen& seen, Eigen::Index column, const Eigen::VectorXd
   };
   std::vector<Harmonic> found;
   double total = 0;
+  const auto instants = static_cast<int>(seen.displacements.size());
   for (int n = 0; n < instants; ++n) {
     Eigen::VectorXcd c = Eigen::VectorXcd::Zero(masses.size());
     for (int k = 0; k < instants; ++k)
@@ -123,21 +130,27 @@ void conjugate(CharacteristicMode& mode) {
 
 }  // namespace
 
-PeriodicMatrix::PeriodicMatrix(const std::vector<Eigen::MatrixXd>& samples, double period) : period_(period) {
+PeriodicMatrix::PeriodicMatrix(const std::vector<Eigen::MatrixXd>& samples, double period)
+    : period_(period), samples_(static_cast<int>(samples.size())) {
   const auto count = static_cast<int>(samples.size());
   const Eigen::Index rows = samples[0].rows(), columns = samples[0].cols();
-  double greatest = 0;
-  for (const Eigen::MatrixXd& s : samples) greatest = std::max(greatest, s.size() > 0 ? s.cwiseAbs().maxCoeff() : 0.0);
+  Eigen::MatrixXd sizes = Eigen::MatrixXd::Zero(rows, columns);
+  for (const Eigen::MatrixXd& s : samples) sizes = sizes.cwiseMax(s.cwiseAbs());
+  const double greatest = sizes.size() > 0 ? sizes.maxCoeff() : 0.0;
+  // What goes round as often as the samples show is known as its angles are, to rounding of these.
+  const double rounding = std::numeric_limits<double>::epsilon() * count;
   mean_ = Eigen::MatrixXd::Zero(rows, columns);
   for (const Eigen::MatrixXd& s : samples) mean_ += s / count;
   for (int n = 1; 2 * n < count; ++n) {
     Eigen::MatrixXcd c = Eigen::MatrixXcd::Zero(rows, columns);
+    // n k may be large: its multiples of the count would leave rounding of the angle that is no harmonic.
     for (int k = 0; k < count; ++k)
-      c += std::polar(2.0 / count, -full_turn * n * k / count) * samples[static_cast<std::size_t>(k)].cast<Complex>();
+      c += std::polar(2.0 / count, -full_turn * (n * k % count) / count) *
+           samples[static_cast<std::size_t>(k)].cast<Complex>();
     const double size = greatest > 0 ? c.cwiseAbs().maxCoeff() / greatest : 0.0;
     change_ = std::max(change_, size);
-    if (3 * n > count) tail_ = std::max(tail_, size);
-    if (size > 1e-16) harmonics_.emplace_back(n, std::move(c));
+    if (size > 1e-16 && (c.cwiseAbs().array() > rounding * sizes.array()).any())
+      harmonics_.emplace_back(n, std::move(c));
   }
 }
 
@@ -169,7 +182,7 @@ namespace {
 
 struct Integrated {
   Eigen::MatrixXd product;
-  int steps = fewest_steps;
+  int steps = 0;
   double changed = 1;  ///< by halving the steps, of the greatest element
 };
 
@@ -177,7 +190,7 @@ struct Integrated {
 Integrated integrated(const PeriodicMatrix& A) {
   constexpr double beyond = std::numeric_limits<double>::infinity();
   const auto rows = static_cast<double>(A.rows());
-  Integrated whole{monodromy(A, fewest_steps)};
+  Integrated whole{monodromy(A, fewest(A)), fewest(A)};
   double before = 2;
   // Where halving the step brings nothing more, rounding is all that is left. Steps that are much too long may leave
   // nothing finite.
@@ -211,7 +224,7 @@ FloquetAnalysis floquet(const PeriodicMatrix& A, const Eigen::VectorXd& masses) 
   const Multipliers m = multipliers(whole.product);
   const double greatest = std::max(1.0, m.values.cwiseAbs().maxCoeff());
   // What a double multiplier without two eigenvectors, as of a motion that nothing holds back, is found to.
-  result.resolution = std::max(whole.changed, 1e-7) / A.period();
+  result.resolution = std::max(std::max(whole.changed, 1e-7) / A.period(), A.unseen());
 
   const Eigen::Index count = m.values.size();
   Eigen::VectorXcd exponents(count);
@@ -237,25 +250,6 @@ FloquetAnalysis floquet(const PeriodicMatrix& A, const Eigen::VectorXd& masses) 
                      return of_a != of_b ? of_a > of_b : a.exponent.imag() < b.exponent.imag();
                    });
   return result;
-}
-
-TurningForm turning_form(const TangentDynamics& dynamics, const State& start, const Held& held,
-                         const Turning& turning) {
-  const std::vector<Eigen::Index> free = free_speeds(held);
-  for (Eigen::Index count = 15;; count = 2 * count + 1) {
-    Turn turn = find_turn(dynamics, start, held, turning, count);
-    std::vector<Eigen::MatrixXd> samples;
-    Eigen::VectorXd units;
-    for (const Tangents& t : turn.points) {
-      Eigen::MatrixXd A = whole_first_order_form(t, held).A;
-      if (samples.empty()) units = balance_of_states(A, 2 * static_cast<Eigen::Index>(free.size()));
-      samples.push_back(units.cwiseInverse().asDiagonal() * A * units.asDiagonal());
-    }
-    PeriodicMatrix A(samples, turning.period);
-    if (A.tail() > 1e-11 && count < 127) continue;
-    Eigen::VectorXd masses = turn.points[0].mass.diagonal()(free).cwiseAbs();
-    return {std::move(A), std::move(masses), std::move(turn)};
-  }
 }
 
 }  // namespace withy

@@ -20,16 +20,20 @@ class PeriodicMatrix {
   [[nodiscard]] Eigen::MatrixXd at(double t) const;
   /// The same with z in other units: u A u⁻¹, u one a row.
   [[nodiscard]] PeriodicMatrix in_units(const Eigen::VectorXd& units) const;
-  /// Greatest element of the upper third of the harmonics, of the greatest of all: what more samples may change.
-  [[nodiscard]] double tail() const { return tail_; }
+  [[nodiscard]] int samples() const { return samples_; }
+  /// By how much A was seen to be another between the samples [1/s], in units that make each coordinate's frequency the
+  /// size of its elements: exponents are not known better.
+  [[nodiscard]] double unseen() const { return unseen_; }
+  void set_unseen(double rate) { unseen_ = rate; }
   /// Greatest element of all harmonics but the mean, of the greatest of all.
   [[nodiscard]] double change() const { return change_; }
 
  private:
   double period_;
+  int samples_;
   Eigen::MatrixXd mean_;
   std::vector<std::pair<int, Eigen::MatrixXcd>> harmonics_;  ///< those that are not rounding
-  double tail_ = 0, change_ = 0;
+  double change_ = 0, unseen_ = 0;
 };
 
 /// A motion e^{λt} p(t), p of the period of A.
@@ -60,15 +64,5 @@ Eigen::MatrixXd monodromy(const PeriodicMatrix& A, int steps);
 /// From the monodromy matrix, with steps halved until it stays; `masses` weigh displacements, the upper half of z.
 /// \throws std::domain_error where anything is not finite.
 FloquetAnalysis floquet(const PeriodicMatrix& A, const Eigen::VectorXd& masses);
-
-/// A of small motions about a periodic motion, of the free speeds, and the inertias M_ii of their displacements.
-struct TurningForm {
-  PeriodicMatrix A;  ///< of displacements, rates and the continuous states of loads, these in units that balance them
-  Eigen::VectorXd masses;
-  Turn turn;
-};
-
-/// With as many samples of the turn as A's harmonics need, 15 to 127. \throws std::domain_error as find_turn
-TurningForm turning_form(const TangentDynamics& dynamics, const State& start, const Held& held, const Turning& turning);
 
 }  // namespace withy

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace withy {
 namespace {
@@ -59,31 +61,36 @@ const Item* best(const std::vector<Item>& items, Counts&& counts, Better&& bette
   return found;
 }
 
-/// The values with one left out for each of `others` that is the same but for rounding; what was left out goes to
-/// `same`.
-Eigen::VectorXcd without(const LinearSystem& system, const Eigen::VectorXcd& values, const Eigen::VectorXcd& others,
-                         std::vector<Complex>& same) {
-  double greatest = 0;
-  for (const Complex value : values)
-    if (const double size = std::abs(exponent_of(system, value)); std::isfinite(size))
-      greatest = std::max(greatest, size);
-  std::vector<Complex> left(values.begin(), values.end());
-  for (const Complex other : others) {
-    const Complex s = exponent_of(system, other);
-    // Multipliers of motions that are over after a sample are rounding of zero, whose logarithms differ.
-    const auto over = [&](Complex value) { return system.sampled() && std::abs(value) < 1e-9; };
-    const auto apart = [&](Complex value) {
-      return over(value) && over(other) ? 0.0 : std::abs(exponent_of(system, value) - s);
+/// What an error of a root is to its exponent.
+double error_of_exponent(const LinearSystem& system, Complex value, double error) {
+  return system.sampled() ? error / (std::abs(value) * system.period) : error;
+}
+
+/// The roots with one left out for each of `others` that is the same but for rounding of both; what was left out goes
+/// to `same`.
+KnownRoots without(const LinearSystem& system, const KnownRoots& roots, const KnownRoots& others, KnownRoots& same) {
+  // What differences of loads and sensors, and the displacements that make a root, are known to.
+  constexpr double known = 1e-6;
+  std::vector<Eigen::Index> left(static_cast<std::size_t>(roots.values.size())), gone;
+  std::iota(left.begin(), left.end(), Eigen::Index{0});
+  // Multipliers of motions that are over after a sample are rounding of zero, whose logarithms differ.
+  const auto over = [&](Complex value) { return system.sampled() && std::abs(value) < 1e-9; };
+  for (Eigen::Index k = 0; k < others.values.size(); ++k) {
+    const Complex other = others.values[k], s = exponent_of(system, other);
+    const auto apart = [&](Eigen::Index i) {
+      return over(roots.values[i]) && over(other) ? 0.0 : std::abs(exponent_of(system, roots.values[i]) - s);
     };
     const auto nearest =
-        std::min_element(left.begin(), left.end(), [&](Complex a, Complex b) { return apart(a) < apart(b); });
-    // A double root is found to the square root of rounding.
-    if (nearest == left.end() || !(apart(*nearest) <= (over(other) ? 0.0 : 1e-6 * std::abs(s)) + 1e-7 * greatest))
-      continue;
-    same.push_back(*nearest);
+        std::min_element(left.begin(), left.end(), [&](Eigen::Index a, Eigen::Index b) { return apart(a) < apart(b); });
+    if (nearest == left.end()) break;
+    const double errors = error_of_exponent(system, roots.values[*nearest], roots.errors[*nearest]) +
+                          error_of_exponent(system, other, others.errors[k]);
+    if (!(apart(*nearest) <= (over(other) ? 0.0 : known * std::abs(s) + errors))) continue;
+    gone.push_back(*nearest);
     left.erase(nearest);
   }
-  return Eigen::Map<const Eigen::VectorXcd>(left.data(), static_cast<Eigen::Index>(left.size()));
+  same = {roots.values(gone), roots.errors(gone)};
+  return {roots.values(left), roots.errors(left)};
 }
 
 /// At half the rate of the samples, z = −1; zero where that is rounding of what makes it.
@@ -110,6 +117,24 @@ void look_at_ends(const TransferFunction& G, std::optional<double> static_gain, 
   margins.last = std::abs(last);
 }
 
+/// Of the loop's own poles, and of hidden ones that grow all the same. One that neither grows nor decays, as of a
+/// motion that nothing holds, is no matter of the loop.
+void find_growth(const TransferFunction& G, const Eigen::VectorXcd& hidden, Margins& m) {
+  m.growth = -std::numeric_limits<double>::infinity();
+  m.period = G.system().period;
+  KnownRoots unmoved;
+  const KnownRoots others{hidden, Eigen::VectorXd::Zero(hidden.size())};
+  for (const Complex pole : without(G.system(), known_poles(closed_loop(G.given(), 1)), others, unmoved).values)
+    m.growth = std::max(m.growth, exponent_of(G.system(), pole).real());
+  for (Eigen::Index i = 0; i < unmoved.values.size(); ++i) {
+    const Complex s = exponent_of(G.system(), unmoved.values[i]);
+    const double least = undamped * std::abs(s) + error_of_exponent(G.system(), unmoved.values[i], unmoved.errors[i]);
+    if (s.real() > least) m.hidden_growth = std::max(m.hidden_growth, s.real());
+  }
+  m.growth = m.hidden_growth > 0 ? std::max(m.growth, m.hidden_growth) : m.growth;
+  m.stable = m.growth < 0;
+}
+
 /// What is left of an angle in (−π, π].
 double wrapped(double angle) { return angle - 2 * pi * std::ceil((angle - pi) / (2 * pi)); }
 
@@ -120,13 +145,12 @@ Complex exponent_of(const LinearSystem& system, Complex value) {
   return value == 0.0 ? Complex(-std::numeric_limits<double>::infinity(), 0) : std::log(value) / system.period;
 }
 
-SeenRoots seen_roots(const LinearSystem& system, const Eigen::VectorXcd& poles, const Eigen::VectorXcd& zeros) {
-  std::vector<Complex> hidden, same;
+SeenRoots seen_roots(const LinearSystem& system, const KnownRoots& poles, const KnownRoots& zeros) {
+  KnownRoots hidden, same;
   SeenRoots seen;
-  seen.zeros = without(system, zeros, poles, same);
-  seen.poles = without(system, poles,
-                       Eigen::Map<const Eigen::VectorXcd>(same.data(), static_cast<Eigen::Index>(same.size())), hidden);
-  seen.hidden = Eigen::Map<const Eigen::VectorXcd>(hidden.data(), static_cast<Eigen::Index>(hidden.size()));
+  seen.zeros = without(system, zeros, poles, same).values;
+  seen.poles = without(system, poles, same, hidden).values;
+  seen.hidden = std::move(hidden.values);
   return seen;
 }
 
@@ -220,11 +244,7 @@ Margins margins(const TransferFunction& G, const std::vector<ResponseAt>& respon
   }
   std::stable_sort(m.gains.begin(), m.gains.end(),
                    [](const GainMargin& a, const GainMargin& b) { return a.omega < b.omega; });
-  m.growth = -std::numeric_limits<double>::infinity();
-  std::vector<Complex> unmoved;
-  for (const Complex pole : without(G.system(), poles(closed_loop(G.given(), 1)), hidden, unmoved))
-    m.growth = std::max(m.growth, exponent_of(G.system(), pole).real());
-  m.stable = m.growth < 0;
+  find_growth(G, hidden, m);
   return m;
 }
 
@@ -251,6 +271,11 @@ const PhaseMargin* Margins::lead() const {
   return best(
       phases, [this](const PhaseMargin& p) { return stable && p.angle < 0; },
       [](const PhaseMargin& a, const PhaseMargin& b) { return a.angle > b.angle; });
+}
+
+std::optional<int> Margins::samples() const {
+  if (!(period > 0) || delay() == nullptr) return {};
+  return static_cast<int>(std::ceil(delay()->delay / period * (1 - undamped))) - 1;
 }
 
 const PhaseMargin* Margins::delay() const {

@@ -29,7 +29,8 @@ struct SeenRoots {
   Eigen::VectorXcd poles, zeros;  ///< without them
   Eigen::VectorXcd hidden;
 };
-SeenRoots seen_roots(const LinearSystem& system, const Eigen::VectorXcd& poles, const Eigen::VectorXcd& zeros);
+/// They are the same where they differ by no more than rounding of each may have moved it, or by 1e-6 of themselves.
+SeenRoots seen_roots(const LinearSystem& system, const KnownRoots& poles, const KnownRoots& zeros);
 
 /// Decay and frequency s = ln(z)/T that a multiplier stands for; an eigenvalue of a system in continuous time itself.
 std::complex<double> exponent_of(const LinearSystem& system, std::complex<double> value);
@@ -57,8 +58,10 @@ struct PhaseMargin {
 struct Margins {
   std::vector<GainMargin> gains;    ///< in the order of frequency
   std::vector<PhaseMargin> phases;  ///< in the order of frequency
-  bool stable = false;              ///< whether all poles of the loop closed with k = 1 decay
-  double growth = 0;                ///< [1/s] of its pole that decays least
+  bool stable = false;              ///< whether all poles of the loop closed with k = 1 decay, and no hidden one grows
+  double growth = 0;                ///< [1/s] of its pole that decays least, or of a hidden one that grows faster
+  double hidden_growth = 0;         ///< [1/s] of the hidden pole that grows fastest, which no gain stops; 0: none grows
+  double period = 0;                ///< [s] of a sampled system
   double last = 0;                  ///< |G| at the last frequency: infinity, or half the rate of a sampled system
   /// The nearest of `gains` to k = 1: the least of the factors above, the greatest below; null where there is none.
   [[nodiscard]] const GainMargin* upper() const;
@@ -69,10 +72,13 @@ struct Margins {
   [[nodiscard]] const PhaseMargin* lag() const;
   [[nodiscard]] const PhaseMargin* lead() const;
   [[nodiscard]] const PhaseMargin* delay() const;
+  /// Of a sampled loop with such a dead time, the whole samples below it: a delay of these leaves it stable. What is
+  /// held between samples has another lag at a part of one.
+  [[nodiscard]] std::optional<int> samples() const;
 };
 /// From the crossings of G with the negative real axis and the unit circle between the values of the response, found by
 /// bisection, and from the ends of the frequencies: 0, and half the rate or infinity.
-/// \param hidden poles that the loop does not move; they do not count
+/// \param hidden poles that the loop does not move: of these only growth counts
 /// \param static_gain G(0); nothing where that has no bound
 /// \throws std::domain_error where the closed loop is not well posed
 Margins margins(const TransferFunction& G, const std::vector<ResponseAt>& response, const Eigen::VectorXcd& hidden,

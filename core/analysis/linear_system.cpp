@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "withy/core/analysis/unheld.hpp"
+
 namespace withy {
 namespace {
 
@@ -38,37 +40,39 @@ double drop_seen_state(LinearSystem& s, double scale) {
   return sign * seen;
 }
 
-Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
-  if (A.rows() == 0) return {};
-  if (!A.allFinite()) throw std::domain_error("the linear system is not finite");
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A, false);
-  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
-  return solver.eigenvalues();
+/// What rounding of a matrix moves its eigenvalues by: its size times what the vectors of each make of it, and of
+/// double ones without two vectors, of which the vectors tell nothing, its root.
+Eigen::VectorXd moved_by_rounding(const Eigen::MatrixXcd& vectors, double rounding, double size) {
+  const Eigen::MatrixXcd left = Eigen::PartialPivLU<Eigen::MatrixXcd>(vectors).inverse();
+  Eigen::VectorXd moved(vectors.cols());
+  for (Eigen::Index i = 0; i < moved.size(); ++i) {
+    const double at_most = std::sqrt(rounding * size), here = rounding * left.row(i).norm() * vectors.col(i).norm();
+    moved[i] = here < at_most ? here : at_most;
+  }
+  return moved;
 }
 
-/// The same with zero for each direction that A takes to nothing, and again for what is left without it: a chain of
-/// integrators, whose eigenvalues rounding would spread by its root, is taken apart link by link.
-Eigen::VectorXcd eigenvalues_with_zeros(Eigen::MatrixXd A) {
-  const Eigen::Index n = A.rows();
+/// Eigenvalues with zero for each direction that A takes to nothing, and again for what is left without it: a chain of
+/// integrators, whose eigenvalues rounding would spread by its root, is taken apart link by link. Those are exact.
+/// \param rounding of elements, beside that of A itself \param size greatest of what A is made of
+KnownRoots eigenvalues_with_zeros(const Eigen::MatrixXd& A, double rounding, double size) {
+  constexpr double share = 1e-13;
   if (!A.allFinite()) throw std::domain_error("the linear system is not finite");
-  Eigen::VectorXcd values = Eigen::VectorXcd::Zero(n);
-  double greatest = 0;
-  while (A.rows() > 0) {
-    const double largest = A.colwise().norm().maxCoeff();
-    greatest = std::max(greatest, largest);
-    if (!(largest > 0)) return values;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> rows(A.rows(), A.cols());
-    rows.setThreshold(1e-13 * static_cast<double>(n) * greatest / largest);
-    rows.compute(A);
-    const Eigen::Index kept = rows.rank();
-    if (kept == A.rows()) break;
-    const Eigen::MatrixXd Z = rows.matrixZ();
-    const Eigen::MatrixXd V = rows.colsPermutation() * Z.topRows(kept).transpose();
-    A = V.transpose() * A * V;
-  }
-  values.head(A.rows()) = eigenvalues(A);
-  return values;
+  KnownRoots roots{Eigen::VectorXcd::Zero(A.rows()), Eigen::VectorXd::Zero(A.rows())};
+  const Eigen::MatrixXd of_elements = rounding_of(A).array() + rounding;
+  const Unchained unchained(A, unheld_but_for(A, of_elements), of_elements);
+  const Eigen::MatrixXd& left = unchained.matrix();
+  if (left.rows() == 0) return roots;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(left);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  roots.values.head(left.rows()) = solver.eigenvalues();
+  size = std::max(size, left.norm());
+  roots.errors.head(left.rows()) = moved_by_rounding(solver.eigenvectors(), share * size, size);
+  return roots;
 }
+
+/// What a number beside one is rounded to, in a matrix of so many rows.
+double beside_one(Eigen::Index rows) { return 2e-16 * static_cast<double>(rows); }
 
 }  // namespace
 
@@ -147,14 +151,19 @@ void balance_with_ends(LinearSystem& s) {
 
 }  // namespace
 
-Eigen::VectorXcd poles(const LinearSystem& system) {
+KnownRoots known_poles(const LinearSystem& system) {
   LinearSystem s = system;
   balance(s);
-  if (!s.sampled()) return eigenvalues_with_zeros(s.A);
+  if (!s.sampled()) return eigenvalues_with_zeros(s.A, 0, 0);
   // What rests between samples stands at 1.
+  const double size = std::max(1.0, s.A.size() > 0 ? s.A.cwiseAbs().maxCoeff() : 0.0);
   s.A.diagonal().array() -= 1;
-  return eigenvalues_with_zeros(s.A).array() + 1;
+  KnownRoots roots = eigenvalues_with_zeros(s.A, beside_one(s.A.rows()) * size, 0);
+  roots.values.array() += 1;
+  return roots;
 }
+
+Eigen::VectorXcd poles(const LinearSystem& system) { return known_poles(system).values; }
 
 std::size_t zeros_of(const Eigen::MatrixXd& A) {
   const Eigen::VectorXcd exact =
@@ -187,11 +196,16 @@ ZerosAndGain zeros(LinearSystem s) {
     through = std::abs(s.D(0, 0));
   }
   const double d = s.D(0, 0);
-  Eigen::MatrixXd left = s.A - s.B * s.C / d;
-  if (!s.sampled()) return {eigenvalues_with_zeros(left), product * d};
+  const Eigen::MatrixXd through_d = s.B * s.C / d;
+  Eigen::MatrixXd left = s.A - through_d;
+  // D is what is left of a vector as long as B.
+  const double size = s.A.norm() + through_d.norm() * std::max(1.0, s.B.norm() / std::abs(d));
+  if (!s.sampled()) return {eigenvalues_with_zeros(left, 0, size), product * d};
   // As of poles: what the loop neither sees nor moves rests between samples, and stands at 1 with what else is there.
   left.diagonal().array() -= 1;
-  return {eigenvalues_with_zeros(left).array() + 1, product * d};
+  ZerosAndGain found{eigenvalues_with_zeros(left, beside_one(left.rows()) * std::max(1.0, size), size), product * d};
+  found.zeros.values.array() += 1;
+  return found;
 }
 
 TransferFunction::TransferFunction(LinearSystem system) : given_(std::move(system)), of_(given_) {

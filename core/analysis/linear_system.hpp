@@ -37,6 +37,14 @@ Eigen::VectorXd balance_of_states(Eigen::MatrixXd A, Eigen::Index first = 0);
 /// finite
 Eigen::VectorXcd poles(const LinearSystem& system);
 
+/// Eigenvalues, and what rounding may have moved them by; zero of those found by rank.
+struct KnownRoots {
+  Eigen::VectorXcd values;
+  Eigen::VectorXd errors;
+};
+/// The same as `poles`.
+KnownRoots known_poles(const LinearSystem& system);
+
 /// How many eigenvalues of A are zero, by rank as in `poles`.
 std::size_t zeros_of(const Eigen::MatrixXd& A);
 
@@ -45,8 +53,8 @@ double unit_of_rates(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G);
 
 /// What G(s) = C (s − A)⁻¹ B + D is: gain · ∏ (s − zero) / ∏ (s − pole) of one input and one output.
 struct ZerosAndGain {
-  Eigen::VectorXcd zeros;  ///< finite ones
-  double gain = 0;         ///< 0: the output does not feel the input
+  KnownRoots zeros;  ///< finite ones
+  double gain = 0;   ///< 0: the output does not feel the input
 };
 /// The finite generalized eigenvalues of the Rosenbrock pencil [A − s, B; C, D]. Each infinite one is taken off by an
 /// orthogonal transformation that leaves a smaller pencil (Emami-Naeini & Van Dooren 1982): where D is zero, that is

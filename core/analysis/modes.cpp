@@ -98,52 +98,6 @@ std::vector<Root> roots_at_rest(const Scaled& s, const Neutral& neutral) {
   return roots;
 }
 
-/// A matrix freed of its zeros link by link: motions that nothing holds are chains of them.
-class Unchained {
- public:
-  /// \param first columns that A takes to nothing; where there are none it has no zeros
-  Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first) : matrix_(A), share_(rank_share(A)) {
-    for (Eigen::MatrixXd next = first; next.cols() > 0; next = unheld()) {
-      for (Eigen::Index k = 0; k < next.cols(); ++k) {
-        Eigen::MatrixXd direction = next.col(k);
-        for (auto link = links_.rbegin(); link != links_.rend(); ++link) direction = link->lifted(direction);
-        directions_.emplace_back(direction);
-      }
-      links_.emplace_back(matrix_, next);
-      matrix_ = links_.back().matrix();
-    }
-  }
-  /// Vectors of A, one a zero.
-  [[nodiscard]] const std::vector<Eigen::VectorXd>& directions() const { return directions_; }
-  [[nodiscard]] Eigenpairs others() const {
-    Eigenpairs found = eigenpairs(matrix_);
-    for (auto link = links_.rbegin(); link != links_.rend(); ++link)
-      found.vectors = link->vectors(found.values, found.vectors);
-    return found;
-  }
-
- private:
-  static double rank_share(const Eigen::MatrixXd& A) {
-    return 1e-13 * static_cast<double>(A.rows()) * A.colwise().norm().maxCoeff();
-  }
-  /// What is left takes these to nothing, but for rounding of what A was.
-  [[nodiscard]] Eigen::MatrixXd unheld() const {
-    const Eigen::Index n = matrix_.rows();
-    const double largest = n > 0 ? matrix_.colwise().norm().maxCoeff() : 0.0;
-    if (!(largest > 0)) return Eigen::MatrixXd::Identity(n, n);
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> rows(n, n);
-    rows.setThreshold(share_ / largest);
-    rows.compute(matrix_);
-    const Eigen::MatrixXd Z = rows.matrixZ();
-    return rows.colsPermutation() * Z.bottomRows(n - rows.rank()).transpose();
-  }
-
-  Eigen::MatrixXd matrix_;
-  double share_;
-  std::vector<Quotient> links_;
-  std::vector<Eigen::VectorXd> directions_;
-};
-
 std::vector<Root> roots_in_motion(const Scaled& s, const Neutral& neutral) {
   const Eigen::Index n = s.M.rows();
   Eigen::MatrixXd A(2 * n, 2 * n);
@@ -158,13 +112,14 @@ std::vector<Root> roots_in_motion(const Scaled& s, const Neutral& neutral) {
   still << neutral.directions, -s.C * neutral.directions;
   const Unchained unchained(A, units.cwiseInverse().asDiagonal() * still);
   std::vector<Root> roots;
-  for (const Eigen::VectorXd& direction : unchained.directions()) {
+  for (const auto& direction : unchained.directions().colwise()) {
     // Of a motion at a constant rate that rate is the shape: the displacements of a chain's later links are any.
     const Eigen::VectorXd z = units.cwiseProduct(direction);
     const bool moves = static_cast<Eigen::Index>(roots.size()) >= neutral.directions.cols() && !z.tail(n).isZero(0);
     roots.push_back({0, (moves ? z.tail(n) : z.head(n)).cast<Complex>()});
   }
-  const Eigenpairs found = unchained.others();
+  Eigenpairs found = eigenpairs(unchained.matrix());
+  found.vectors = unchained.vectors(found.values, found.vectors);
   for (Eigen::Index i = 0; i < found.values.size(); ++i)
     roots.push_back({found.values[i], units.head(n).cast<Complex>().cwiseProduct(found.vectors.col(i).head(n))});
   return roots;

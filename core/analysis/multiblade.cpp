@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -202,6 +203,61 @@ std::vector<MultibladeCoordinate> coordinates_of(const Held& held, const std::ve
   return all;
 }
 
+/// States of A that nothing but rounding couples with others, each part in order. What a rotor does collectively and
+/// what its blades do against each other may have one frequency, and the eigenvectors of all of A would mix them.
+std::vector<std::vector<Eigen::Index>> uncoupled(const Eigen::MatrixXd& A) {
+  // What the eigenvalues of A as a whole would be wrong by.
+  const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(A.rows()) * A.norm();
+  std::vector<std::vector<Eigen::Index>> parts;
+  std::vector<bool> taken(static_cast<std::size_t>(A.rows()), false);
+  for (Eigen::Index first = 0; first < A.rows(); ++first) {
+    if (taken[static_cast<std::size_t>(first)]) continue;
+    std::vector<Eigen::Index> part = {first};
+    taken[static_cast<std::size_t>(first)] = true;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      for (Eigen::Index j = 0; j < A.rows(); ++j) {
+        if (taken[static_cast<std::size_t>(j)] ||
+            std::max(std::abs(A(part[i], j)), std::abs(A(j, part[i]))) <= rounding)
+          continue;
+        taken[static_cast<std::size_t>(j)] = true;
+        part.push_back(j);
+      }
+    }
+    std::sort(part.begin(), part.end());
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+/// The modes of one part of the balanced A, which nothing else takes part in.
+void add_modes(const Eigen::MatrixXd& balanced, const std::vector<Eigen::Index>& part, const Eigen::VectorXd& units,
+               const Eigen::VectorXd& masses, std::vector<CharacteristicMode>& modes) {
+  const Eigen::Index m = masses.size(), states = balanced.rows() - 2 * m;
+  const Eigen::MatrixXd own = balanced(part, part);
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(own);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  Eigen::MatrixXcd own_left;
+  if (states > 0) own_left = left_vectors(own, solver.eigenvalues());
+  for (Eigen::Index i = 0; i < own.rows(); ++i) {
+    CharacteristicMode mode;
+    mode.exponent = solver.eigenvalues()[i];
+    if (mode.exponent.imag() < 0) continue;
+    Eigen::VectorXcd right = Eigen::VectorXcd::Zero(balanced.rows()), left = right;
+    right(part) = solver.eigenvectors().col(i);
+    const Eigen::VectorXcd z = units.cwiseInverse().cast<Complex>().cwiseProduct(right);
+    mode.shape.resize(m + states);
+    mode.shape << z.head(m), z.tail(states);
+    if (states > 0) {
+      left(part) = own_left.col(i);
+      mode.dominant = most_taking_part(left, right, m);
+    } else {
+      mode.shape.cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.dominant);
+    }
+    if (mode.shape[mode.dominant] != 0.0) mode.shape /= Complex(mode.shape[mode.dominant]);
+    modes.push_back(std::move(mode));
+  }
+}
+
 }  // namespace
 
 std::vector<Blades> equal_branches(const Model& model, const std::vector<std::string>& names) {
@@ -246,31 +302,15 @@ std::vector<CharacteristicMode> constant_modes(const Eigen::MatrixXd& A, const E
   if (m == 0) return {};
   const Eigen::VectorXd units = balancing_units(A, masses);
   const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(balanced);
-  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
   std::vector<CharacteristicMode> modes;
-  const Eigen::Index states = A.rows() - 2 * m;
-  Eigen::MatrixXcd left;
-  if (states > 0) left = left_vectors(balanced, solver.eigenvalues());
-  for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    CharacteristicMode mode;
-    mode.exponent = solver.eigenvalues()[i];
-    if (mode.exponent.imag() < 0) continue;
-    const Eigen::VectorXcd right = solver.eigenvectors().col(i),
-                           z = units.cwiseInverse().cast<Complex>().cwiseProduct(right);
-    mode.shape.resize(m + states);
-    mode.shape << z.head(m), z.tail(states);
-    if (states > 0)
-      mode.dominant = most_taking_part(left.col(i), right, m);
-    else
-      mode.shape.cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.dominant);
-    if (mode.shape[mode.dominant] != 0.0) mode.shape /= Complex(mode.shape[mode.dominant]);
-    modes.push_back(std::move(mode));
+  std::size_t zeros = 0;
+  for (const std::vector<Eigen::Index>& part : uncoupled(balanced)) {
+    add_modes(balanced, part, units, masses, modes);
+    zeros += zeros_of(balanced(part, part));
   }
   std::stable_sort(modes.begin(), modes.end(), [](const CharacteristicMode& a, const CharacteristicMode& b) {
     return std::abs(a.exponent) < std::abs(b.exponent);
   });
-  std::size_t zeros = zeros_of(balanced);
   for (CharacteristicMode& mode : modes) {
     const std::size_t values = mode.exponent.imag() == 0 ? 1 : 2;
     if (values > zeros) break;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/analysis/floquet.hpp"
+#include "withy/core/analysis/turning_form.hpp"
 
 namespace withy {
 

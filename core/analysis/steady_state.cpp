@@ -2,11 +2,14 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 
 #include "withy/core/analysis/relaxation.hpp"
+#include "withy/core/analysis/scaled_problem.hpp"
+#include "withy/core/analysis/sliding.hpp"
 #include "withy/core/analysis/unheld.hpp"
 #include "withy/core/analysis/unreached.hpp"
 #include "withy/core/model/hinge_rates.hpp"
@@ -23,87 +26,6 @@ constexpr double typed_share = 1e-9;
 constexpr double near = 0.5;
 double greatest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; }
 
-/// What balances at a steady state: forces on the free speeds, and rates of the continuous states of loads.
-struct Imbalance {
-  Eigen::VectorXd forces;  ///< the residual, one a speed
-  Eigen::VectorXd rates;
-};
-
-/// A change of the free coordinates, spread over all speeds, and of those states.
-struct Change {
-  Eigen::VectorXd moved, states;
-  [[nodiscard]] bool finite() const { return moved.allFinite() && states.allFinite(); }
-};
-
-/// Units in which what is free and the states of loads are measured alike, and the linear problem in them.
-class ScaledProblem {
- public:
-  /// \param mass M_ii of the free speeds
-  explicit ScaledProblem(const Eigen::VectorXd& mass) : of_free_(mass.cwiseAbs().cwiseSqrt()) {
-    for (double& s : of_free_) s = s > 0 ? 1 / s : 1.0;
-  }
-
-  /// K of the free coordinates with what states do to them and they to rates. A state's unit is what forces as much as
-  /// the stiffest coordinate does; a rate's row is as large as that.
-  Eigen::MatrixXd matrix(const Stiffness& t, const std::vector<Eigen::Index>& free) {
-    const Eigen::Index m = of_free_.size(), k = t.by_state.cols();
-    const auto scale = of_free_.asDiagonal();
-    Eigen::MatrixXd J(m + k, m + k);
-    J.topLeftCorner(m, m) = scale * t.by_position(free, free) * scale;
-    of_states_.setOnes(k), of_rates_.setOnes(k);
-    if (k == 0) return J;
-    J.topRightCorner(m, k) = scale * t.by_state(free, Eigen::all);
-    J.bottomLeftCorner(k, m) = t.rate_by_position(Eigen::all, free) * scale;
-    J.bottomRightCorner(k, k) = t.rate_by_state;
-    const double stiffest = m > 0 ? J.topLeftCorner(m, m).cwiseAbs().maxCoeff() : 0.0;
-    const double like = stiffest > 0 ? stiffest : 1.0;
-    for (Eigen::Index j = 0; j < k; ++j) {
-      const double force = m > 0 ? J.col(m + j).head(m).cwiseAbs().maxCoeff() : 0.0;
-      const double felt = force > 0 ? force : J.col(m + j).tail(k).cwiseAbs().maxCoeff();
-      if (felt > 0) of_states_[j] = like / felt;
-    }
-    J.rightCols(k) *= of_states_.asDiagonal();
-    for (Eigen::Index i = 0; i < k; ++i)
-      if (const double size = J.row(m + i).cwiseAbs().maxCoeff(); size > 0) of_rates_[i] = like / size;
-    J.bottomRows(k) = of_rates_.asDiagonal() * J.bottomRows(k);
-    return J;
-  }
-
-  /// What the diagonal of K is known against, in these units.
-  [[nodiscard]] Eigen::VectorXd floor(const Eigen::VectorXd& in_play, const std::vector<Eigen::Index>& free) const {
-    return of_free_.cwiseAbs2().cwiseProduct(in_play(free));
-  }
-  [[nodiscard]] Eigen::VectorXd right(const Imbalance& left, const std::vector<Eigen::Index>& free) const {
-    Eigen::VectorXd all(of_free_.size() + of_rates_.size());
-    all << of_free_.cwiseProduct(left.forces(free)), of_rates_.cwiseProduct(left.rates);
-    return all;
-  }
-  [[nodiscard]] Change change(const Eigen::VectorXd& scaled, const std::vector<Eigen::Index>& free,
-                              Eigen::Index speeds) const {
-    Change c{Eigen::VectorXd::Zero(speeds), of_states_.cwiseProduct(scaled.tail(of_states_.size()))};
-    c.moved(free) = of_free_.cwiseProduct(scaled.head(of_free_.size()));
-    return c;
-  }
-  [[nodiscard]] double norm(const Change& c, const std::vector<Eigen::Index>& free) const {
-    Eigen::VectorXd all(of_free_.size() + of_states_.size());
-    all << c.moved(free).cwiseQuotient(of_free_), c.states.cwiseQuotient(of_states_);
-    return all.norm();
-  }
-  /// Displacements of that size and states of these, not less than what forces as much.
-  [[nodiscard]] Eigen::VectorXd sizes(double displacement, const Eigen::VectorXd& states) const {
-    Eigen::VectorXd all(of_free_.size() + of_states_.size());
-    all << displacement * of_free_.cwiseInverse(), (states + states_like(displacement)).cwiseQuotient(of_states_);
-    return all;
-  }
-  /// What forces as much as a displacement of that size.
-  [[nodiscard]] Eigen::VectorXd states_like(double displacement) const {
-    return of_states_ * (displacement / (of_free_.size() > 0 ? of_free_.minCoeff() : 1.0));
-  }
-
- private:
-  Eigen::VectorXd of_free_, of_states_, of_rates_;
-};
-
 class Newton {
  public:
   /// From a state in which no mode moves.
@@ -118,7 +40,7 @@ class Newton {
 
   SteadyState solve() {
     SteadyState result;
-    double moved = 0;
+    double moved = 0, before = std::numeric_limits<double>::infinity();  // before: size of the step before
     Eigen::VectorXd changed = Eigen::VectorXd::Zero(states().size());
     for (; result.iterations < most_iterations; ++result.iterations) {
       const Stiffness t = dynamics_.stiffness(state_.time, state_.y, rest_);
@@ -139,8 +61,16 @@ class Newton {
         result.converged = balanced(left);
         break;
       }
-      const double length = advance(step);
-      if (length == 0) break;
+      // Near a balance steps shrink with their square, until rounding is all that is left over: of forces that make up
+      // for each other about coordinates of zero it moves these by more than a share of nothing.
+      const double now = scaled_.norm(step, free_);
+      const bool shrinks = now <= 0.25 * before;
+      before = now;
+      const double length = shrinks || !rounding(left) ? advance(step) : 0.0;
+      if (length == 0) {
+        result.converged = rounding(left) && balanced(left);
+        break;
+      }
       moved += length * greatest(step.moved);
       changed += length * step.states.cwiseAbs();
     }
@@ -189,16 +119,24 @@ class Newton {
     const Eigen::VectorXd sizes = states().cwiseAbs() + changed + scaled_.states_like(size());
     return (step.states.array().abs() <= share * sizes.array()).all();
   }
-  /// Whether what is left over is rounding of the terms in it.
+  /// What the terms of what is left over amount to, in the units of the problem.
+  [[nodiscard]] Eigen::VectorXd in_play(const Imbalance& left) const {
+    Eigen::VectorXd all = scaled_.right({dynamics_.terms_in_play(state_.time, state_.y, rest_), 0 * left.rates}, free_);
+    // Of rates that depend on nothing none is small.
+    all.tail(left.rates.size()) =
+        matrix_.bottomRows(left.rates.size()).cwiseAbs() * scaled_.sizes(size(), states().cwiseAbs());
+    return all;
+  }
+  /// Whether data that are typed with some digits could balance.
   [[nodiscard]] bool balanced(const Imbalance& left) const {
     const Eigen::VectorXd scaled = scaled_.right(left, free_);
     if (!singular_) return scaled.allFinite();
-    Eigen::VectorXd in_play =
-        scaled_.right({dynamics_.terms_in_play(state_.time, state_.y, rest_), 0 * left.rates}, free_);
-    // Of rates that depend on nothing none is small.
-    in_play.tail(left.rates.size()) =
-        matrix_.bottomRows(left.rates.size()).cwiseAbs() * scaled_.sizes(size(), states().cwiseAbs());
-    return reaches(solver_.unreached(), scaled, in_play);
+    return reaches(solver_.unreached(), scaled, in_play(left));
+  }
+  /// Whether what is left over is what rounding leaves of the terms in it: no step makes it less.
+  [[nodiscard]] bool rounding(const Imbalance& left) const {
+    const double share = rounding_of_sums(dynamics_.model().bodies().size());
+    return (scaled_.right(left, free_).array().abs() <= share * in_play(left).array()).all();
   }
   /// The part of the step that is taken: 0 where none makes the next one smaller.
   double advance(const Change& step) {
@@ -323,6 +261,7 @@ bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, con
   const auto n = static_cast<Eigen::Index>(held.size());
   const auto free = free_speeds(held);
   if (free.empty()) return true;
+  if (!slides_steadily(dynamics, state, held)) return false;
   const Eigen::Map<const Eigen::VectorXd> u(state.y.data() + dynamics.model().layout().positions, n);
   const Eigen::VectorXd change = tangents.by_position * u;
   const Eigen::VectorXd in_play =

@@ -49,7 +49,8 @@ SteadyState find_steady_state(const TangentDynamics& dynamics, const State& star
 bool is_steady_state(const TangentDynamics& dynamics, const State& state, const Held& held);
 
 /// Whether what the free speeds feel begins to change as the hinges turn with the state's rates: it does where gravity
-/// or a load turns in the rotating frame, but where these are at their greatest; check_turn looks at a whole turn.
+/// or a load turns in the rotating frame, but where these are at their greatest; check_turn looks at a whole turn. And
+/// whether it is the same further along where hinges slide.
 bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, const State& state, const Held& held);
 
 }  // namespace withy

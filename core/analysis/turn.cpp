@@ -15,8 +15,13 @@
 namespace withy {
 namespace {
 
-/// Prime, so that no harmonic below it hides.
-constexpr Eigen::Index compared_angles = 11;
+/// Of a turn: eleven equal ones, at which no harmonic hides that is no multiple of eleven, and others for those.
+std::vector<double> compared_shares() {
+  std::vector<double> shares;
+  for (int k = 0; k < 11; ++k) shares.push_back(k / 11.0);
+  shares.insert(shares.end(), in_no_ratio.begin(), in_no_ratio.end());
+  return shares;
+}
 /// A share of terms that cancel which counts as rounding, and the least displacement [rad, m] it is taken of.
 constexpr double balanced_share = 1e-9, least_displacement = 1e-3;
 
@@ -54,6 +59,30 @@ void add_rate(Turning& turning, double rate, bool angular, const std::string& na
     turning.period *= n;
   } else {
     turning.problem = "the hinges turn at rates without a common period ('" + name + "')";
+  }
+}
+
+/// [s] a turn of the hinge that is slowest; one that moves along a line goes 2π m. 0: none moves.
+double longest_turn(const Turning& turning, const Layout& layout, const State& state) {
+  double longest = 0;
+  for (const std::size_t s : turning.speeds)
+    longest = std::max(longest, full_turn / std::abs(state.y[layout.positions + s]));
+  return longest;
+}
+
+/// Carries the quaternion of a hinge, q̇ = N(q) ω, on with a constant angular velocity: |ω| t/2 along its great circle.
+void turn_quaternion(const Hinge& hinge, const std::vector<HingeRate>& rates, const std::vector<double>& angular,
+                     double after, std::span<double> x) {
+  double squares = 0;
+  for (const double rate : angular) squares += rate * rate;
+  if (squares == 0) return;
+  const double speed = std::sqrt(squares), half = 0.5 * speed * after;
+  std::vector<double> along(x.size());
+  hinge.derivatives(x, angular, along);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool apart =
+        std::any_of(rates.begin(), rates.end(), [&](const HingeRate& rate) { return rate.coordinate == i; });
+    if (!apart) x[i] = std::cos(half) * x[i] + 2 * std::sin(half) / speed * along[i];
   }
 }
 
@@ -261,14 +290,17 @@ Turning turning(const Model& model, const State& state, double period) {
     const Slot& slot = layout.hinges[h];
     if (model.driven(h)) continue;
     const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
+    double squares = 0;  // of an angular velocity, about whose axis it turns
     for (std::size_t i = 0; i < slot.speeds; ++i) {
       const double rate = state.y[layout.positions + slot.speed + i];
       if (rate == 0) continue;
       result.speeds.push_back(slot.speed + i);
-      if (!rates[i].coordinate)
-        result.problem = "'" + slot.name + "' turns with an angular velocity, and its coordinates are a quaternion";
-      add_rate(result, rate, rates[i].angular, slot.name);
+      if (rates[i].coordinate)
+        add_rate(result, rate, rates[i].angular, slot.name);
+      else
+        squares += rate * rate;
     }
+    add_rate(result, std::sqrt(squares), true, slot.name);
   }
   for (const MotionNode& node : model.motions()) {
     if (node.motion->locks() || period > 0) continue;
@@ -294,12 +326,18 @@ State carried(const Model& model, const Turning& turning, const State& start, do
   const Layout& layout = model.layout();
   for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
     const Slot& slot = layout.hinges[h];
+    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
+    std::vector<double> angular(slot.speeds, 0.0);
     for (std::size_t i = 0; i < slot.speeds; ++i) {
       const std::size_t s = slot.speed + i;
       if (std::find(turning.speeds.begin(), turning.speeds.end(), s) == turning.speeds.end()) continue;
-      const std::size_t x = *hinge_rates(*model.hinges()[h].hinge)[i].coordinate;
-      state.y[slot.position + x] += after * start.y[layout.positions + s];
+      if (const auto x = rates[i].coordinate)
+        state.y[slot.position + *x] += after * start.y[layout.positions + s];
+      else
+        angular[i] = start.y[layout.positions + s];
     }
+    turn_quaternion(*model.hinges()[h].hinge, rates, angular, after,
+                    std::span(state.y).subspan(slot.position, slot.positions));
   }
   model.prescribe(state);
   return state;
@@ -329,29 +367,31 @@ TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const
   TurnCheck check;
   check.turning = turning(dynamics.model(), steady, period);
   const std::vector<Eigen::Index> free = free_speeds(held);
-  if (check.turning.period == 0 || free.empty()) return check;
+  const Layout& layout = dynamics.model().layout();
+  // Without a common period what is looked at is as much of the motion.
+  const double over = check.turning.period > 0 ? check.turning.period : longest_turn(check.turning, layout, steady);
+  if (over == 0 || free.empty()) return check;
   Tangents at_start;
   Eigen::MatrixXd first;
   Eigen::VectorXd units;  // of states of loads beside the others; empty: there are none
   Balance start;
   double greatest = 0;
-  for (Eigen::Index k = 0; k < compared_angles; ++k) {
-    const State state = carried(dynamics.model(), check.turning, steady,
-                                check.turning.period * static_cast<double>(k) / static_cast<double>(compared_angles));
+  for (const double share : compared_shares()) {
+    const State state = carried(dynamics.model(), check.turning, steady, over * share);
     const Tangents t = dynamics.tangents(state.time, state.y, dynamics.steady_accelerations(state.time));
     const Balance b = balance_of(dynamics, t, state, free);
     Eigen::MatrixXd A = scaled_form(t, held, free);
-    if (k == 0) {
+    if (share == 0) {
       if (dynamics.model().layout().continuous > 0) units = balance_of_states(A);
       start = b;
       at_start = t;
     }
     if (units.size() > 0) A = (units.cwiseInverse().asDiagonal() * A * units.asDiagonal()).eval();
-    if (k == 0) first = A;
+    if (share == 0) first = A;
     greatest = std::max(greatest, A.cwiseAbs().maxCoeff());
     check.change = std::max(check.change, (A - first).cwiseAbs().maxCoeff());
     if (b.differs(start)) check.steady = false;
-    if (!alike(t, at_start, b, full_turn / check.turning.period, free)) check.constant = false;
+    if (!alike(t, at_start, b, full_turn / over, free)) check.constant = false;
   }
   if (greatest > 0) check.change /= greatest;
   return check;

@@ -3,6 +3,7 @@
 /// them. What a frozen angle cannot tell is told by a whole turn.
 #pragma once
 
+#include <array>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -12,6 +13,10 @@
 namespace withy {
 
 inline constexpr double full_turn = 2 * std::numbers::pi;  ///< [rad]
+/// Shares of a period in no ratio of whole numbers to it or to each other: √2 − 1, √3 − 1 and the golden section. A
+/// harmonic may be the same at all of any number of equal intervals, as their multiple is, and not at these too.
+inline constexpr std::array<double, 3> in_no_ratio = {std::numbers::sqrt2 - 1, std::numbers::sqrt3 - 1,
+                                                      std::numbers::phi - 1};
 
 /// How the hinges of a model move about a state, and how long it takes them to come back.
 struct Turning {
@@ -33,7 +38,7 @@ State carried(const Model& model, const Turning& turning, const State& start, do
 /// indices into the model's. What is balanced at that instant does not stay so.
 std::vector<std::size_t> uneven_motions(const TangentDynamics& dynamics, const State& state, const Held& held);
 
-/// What changes over one turn, from eleven angles.
+/// What changes over one turn, from fourteen angles.
 struct TurnCheck {
   Turning turning;
   /// Greatest change of an element of A (FirstOrderForm), of the greatest element, coordinates scaled to unit inertia.
@@ -41,12 +46,12 @@ struct TurnCheck {
   bool steady = true;    ///< the free coordinates stay balanced at every angle
   bool constant = true;  ///< masses, stiffnesses and what depends on speeds are the same at every angle, each by itself
 
-  /// Whether the linearization is periodic and not constant. Meaningless where the turning has a problem.
-  [[nodiscard]] bool periodic() const { return turning.period > 0 && (change > 1e-8 || !steady || !constant); }
+  /// Whether the linearization changes as hinges turn. Where the turning has a problem it has no period.
+  [[nodiscard]] bool periodic() const { return change > 1e-8 || !steady || !constant; }
 };
 
-/// Compares the linearization at eleven angles of a turn, the free coordinates as in `steady`.
-/// \throws std::domain_error where the mass matrix of the free speeds is singular.
+/// Compares the linearization at eleven equal angles of a turn and at three in no ratio to these, the free coordinates
+/// as in `steady`. \throws std::domain_error where the mass matrix of the free speeds is singular.
 TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const Held& held, double period = 0);
 
 /// A periodic motion at equal intervals of its period, with its linearization there.

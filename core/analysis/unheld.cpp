@@ -85,6 +85,10 @@ Quotient::Quotient(const Eigen::MatrixXd& A, const Eigen::MatrixXd& directions) 
   matrix_ = A(kept_, kept_) - apart_.columns(kept_, Eigen::all) * dropped_;
 }
 
+Eigen::MatrixXd Quotient::rounding(const Eigen::MatrixXd& of_A) const {
+  return of_A(kept_, kept_) + apart_.columns(kept_, Eigen::all).cwiseAbs() * of_A(apart_.rows, kept_);
+}
+
 Eigen::MatrixXcd Quotient::vectors(const Eigen::VectorXcd& values, const Eigen::MatrixXcd& of_matrix) const {
   Eigen::MatrixXcd all = Eigen::MatrixXcd::Zero(apart_.columns.rows(), of_matrix.cols());
   all(kept_, Eigen::all) = of_matrix;
@@ -92,10 +96,56 @@ Eigen::MatrixXcd Quotient::vectors(const Eigen::VectorXcd& values, const Eigen::
   return all + apart_.columns * along;
 }
 
+Eigen::MatrixXcd Quotient::left_vectors(const Eigen::MatrixXcd& of_matrix) const {
+  Eigen::MatrixXcd all(apart_.columns.rows(), of_matrix.cols());
+  all(kept_, Eigen::all) = of_matrix;
+  // Each direction alone moves one of the rows that are gone.
+  all(apart_.rows, Eigen::all) = -apart_.columns(kept_, Eigen::all).transpose() * of_matrix;
+  return all;
+}
+
 Eigen::MatrixXd Quotient::lifted(const Eigen::MatrixXd& of_matrix) const {
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(apart_.columns.rows(), of_matrix.cols());
   all(kept_, Eigen::all) = of_matrix;
   return all;
+}
+
+Eigen::MatrixXd rounding_of(const Eigen::MatrixXd& A) {
+  constexpr double of_terms = 1e-13, of_greatest = 2e-16;
+  if (A.size() == 0) return A;
+  const auto n = static_cast<double>(A.rows());
+  const Eigen::RowVectorXd columns = A.cwiseAbs().colwise().maxCoeff();
+  return (n * (of_terms * columns.array() + of_greatest * columns.maxCoeff())).matrix().replicate(A.rows(), 1);
+}
+
+Eigen::MatrixXd unheld_but_for(const Eigen::MatrixXd& A, const Eigen::MatrixXd& rounding) {
+  if (A.size() == 0) return A;
+  const Eigen::MatrixXd known = (A.array().abs() > rounding.array()).select(A, 0.0);
+  return GradedMatrix(known, Eigen::VectorXd()).unheld();
+}
+
+Unchained::Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first, Eigen::MatrixXd rounding)
+    : matrix_(A), directions_(A.rows(), 0), led_to_(A.rows(), 0) {
+  for (Eigen::MatrixXd next = first; next.cols() > 0; next = unheld_but_for(matrix_, rounding)) {
+    if (links_.size() == 1) led_to_ = links_[0].along(next);
+    Eigen::MatrixXd lifted = next;
+    for (auto link = links_.rbegin(); link != links_.rend(); ++link) lifted = link->lifted(lifted);
+    directions_.conservativeResize(Eigen::NoChange, directions_.cols() + next.cols());
+    directions_.rightCols(next.cols()) = lifted;
+    links_.emplace_back(matrix_, next);
+    matrix_ = links_.back().matrix();
+    rounding = links_.back().rounding(rounding);
+  }
+}
+
+Eigen::MatrixXcd Unchained::vectors(const Eigen::VectorXcd& values, Eigen::MatrixXcd of_matrix) const {
+  for (auto link = links_.rbegin(); link != links_.rend(); ++link) of_matrix = link->vectors(values, of_matrix);
+  return of_matrix;
+}
+
+Eigen::MatrixXcd Unchained::left_vectors(Eigen::MatrixXcd of_matrix) const {
+  for (auto link = links_.rbegin(); link != links_.rend(); ++link) of_matrix = link->left_vectors(of_matrix);
+  return of_matrix;
 }
 
 }  // namespace withy

@@ -6,8 +6,17 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 namespace withy {
+
+/// What rounding leaves of a sum over so many bodies, of the sizes of its terms: each body adds some, weight, inertia
+/// and wrenches among them, turned from axes to axes by sums of three products, each known to the last digit.
+inline double rounding_of_sums(std::size_t bodies) {
+  constexpr double of_a_body = 16;
+  return of_a_body * static_cast<double>(1 + bodies) * std::numeric_limits<double>::epsilon();
+}
 
 /// Whether what is left over where no column of A leads is small against what is in play there.
 /// \param nowhere independent columns L of Lᵀ A = 0

@@ -8,6 +8,8 @@
 #include "withy/core/equations/lane_efforts.hpp"
 #include "withy/core/equations/steps_ahead.hpp"
 #include "withy/core/equations/sweep_equations.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/forwarding_equations.hpp"
 #include "withy/core/spatial/lane_transfer.hpp"
 #include "withy/core/sweep/lanes/lane_sweep.hpp"
 #include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
@@ -351,6 +353,10 @@ std::size_t lane_count() noexcept { return cases_at_once; }
 std::string lane_refusal(const EquationsOfMotion& equations) {
   if (const auto* planar = dynamic_cast<const One<Planar>*>(&equations)) return refusal_of(*planar);
   if (const auto* spatial = dynamic_cast<const One<Spatial>*>(&equations)) return refusal_of(*spatial);
+  // What stands before other equations chooses or corrects them case by case.
+  if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr) return "constraints close loops";
+  if (dynamic_cast<const ForwardingEquations*>(&equations) != nullptr)
+    return "events lock or let go of hinges, and the equations are others then";
   return "the formulation is none of the symmetric ones";
 }
 

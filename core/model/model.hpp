@@ -30,9 +30,10 @@ struct Frame {
 /// Says that a body is a segment of one that was cut across. The segments of a whole lie one behind the other, welded,
 /// from its root on; each has the frames "root" and "tip".
 struct Segment {
-  std::string whole;      ///< name of the body that was cut; no body of the model has it
-  std::size_t index = 0;  ///< from the root, from 0
-  std::size_t count = 1;  ///< of the whole
+  std::string whole;                      ///< name of the body that was cut; no body of the model has it
+  std::size_t index = 0;                  ///< from the root, from 0
+  std::size_t count = 1;                  ///< of the whole
+  std::shared_ptr<const Body> body = {};  ///< the whole as one piece; null: not known
 };
 
 /// A body in the tree.

@@ -79,6 +79,11 @@ class SwitchedDiscrete final : public DiscretePart, public SampledPart, public D
   void pass_idle(std::span<double> discrete) const noexcept override {
     if (const DigitalPart* part = digital_part(*forms_.front())) part->pass_idle(own(discrete));
   }
+  bool waits(std::span<const double> discrete) const override {
+    const BoundLoad* load = acting(discrete);
+    const DigitalPart* part = load == nullptr ? nullptr : digital_part(*load);
+    return part != nullptr && part->waits(own(discrete));
+  }
   bool gives_steps() const override {
     const DigitalPart* part = digital_part(*forms_.front());
     return part != nullptr && part->gives_steps();

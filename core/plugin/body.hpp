@@ -32,6 +32,9 @@ class Body {
   /// Name of the station whose deflection is held against shape().length; empty: of none. A body that has no "tip"
   /// names the one that gives most (ModalShape::compliance).
   [[nodiscard]] virtual std::string measured_station() const { return station("tip") ? "tip" : ""; }
+  /// Further stations that are measured with it: they move in motions in which it rests, as the corners of a plate do
+  /// while it twists.
+  [[nodiscard]] virtual std::vector<std::string> measured_beside() const { return {}; }
   /// The body as a rod of exact kinematics; null where it cannot be one. It lives as long as the body.
   [[nodiscard]] virtual const Rod* rod() const { return nullptr; }
   /// The same body with its second-order maps made by `kinematics` from its linear fields; it has a station at every

@@ -39,8 +39,11 @@ struct Wrench {
 
 /// Where a switching function passed through zero.
 struct Crossing {
-  int function = -1;  ///< its index; −1: none did, an instant of the clock or the start of a run
+  int function = -1;  ///< its index; −1: none did, an instant of the clock or a beginning
   int direction = 0;  ///< +1: from below, −1: from above
+  /// The start of a run, or an event that switches the load on: it begins anew, whether an instant of its clock falls
+  /// there or not.
+  bool begins = false;
 };
 
 /// The part of a load that changes at instants alone: a digital controller, a relay. Its numbers are the load's

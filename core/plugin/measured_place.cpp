@@ -29,4 +29,12 @@ std::optional<MeasuredPlace> measured_place(const Body& body) {
   return most;
 }
 
+std::vector<MeasuredPlace> measured_places(const Body& body) {
+  std::vector<MeasuredPlace> all;
+  if (auto place = measured_place(body)) all.push_back(*std::move(place));
+  for (const std::string& name : body.measured_beside())
+    if (auto at = body.station(name)) all.push_back({name, *std::move(at)});
+  return all;
+}
+
 }  // namespace withy

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "withy/core/plugin/body.hpp"
 
@@ -20,5 +21,7 @@ struct MeasuredPlace {
 /// The body's measured station; or where that hardly gives, as the tip of a beam whose functions hold both ends, of the
 /// stations at every twentieth of its length the one that gives most. Nothing of a body that has no such station.
 std::optional<MeasuredPlace> measured_place(const Body& body);
+/// The same with what the body has measured beside it (Body::measured_beside): how far it bends is the greatest of all.
+std::vector<MeasuredPlace> measured_places(const Body& body);
 
 }  // namespace withy

@@ -190,10 +190,11 @@ std::unique_ptr<Body> damped_as(const Eigen::VectorXd& times, std::unique_ptr<Bo
 
 std::unique_ptr<Body> in_segments(std::unique_ptr<Body> whole, const Value& value,
                                   const std::vector<ParameterSpec>& specs,
-                                  const std::function<std::unique_ptr<Body>(const Value& segment)>& make) {
+                                  const std::function<std::unique_ptr<Body>(const Value& segment)>& make,
+                                  const Body* vibrating) {
   const std::size_t n = value.has("segments") ? value.count_at("segments") : 1;
   if (n == 1) return whole;
-  const Eigen::VectorXd times = time_constants(*whole);
+  const Eigen::VectorXd times = time_constants(vibrating != nullptr ? *vibrating : *whole);
   std::vector<std::shared_ptr<const Body>> segments;
   for (std::size_t k = 0; k < n; ++k) {
     auto segment = make(segment_of(value, specs, k, n));

@@ -143,7 +143,7 @@ void EventActions::change_form(State& state, const EventAction& action) {
   // What has stood still begins anew.
   const Layout& layout = model_.layout();
   std::vector<double> scratch(model_.load_scratch());
-  (*renewal_)(state, node.slot, {});
+  (*renewal_)(state, node.slot, {.begins = true});
   std::vector<double> begun(node.continuous_slot.count);
   node.continuous->begin(node.view(state.time, state.y, layout, scratch), begun);
   std::copy(begun.begin(), begun.end(), state.y.begin() + static_cast<std::ptrdiff_t>(node.continuous_slot.first));

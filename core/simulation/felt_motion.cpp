@@ -23,6 +23,19 @@ Matrix3 gradient_of(const Model& model, const State& state, const FrameMotion& a
   return gradient;
 }
 
+/// Of the axes of fields, by what they give velocities across them: Coriolis' acceleration −2 Ω × v.
+Vector3 turning_of(const Model& model, const State& state, const FrameMotion& at) {
+  static const MassPoint unit{.mass = 1, .second = Matrix3::Zero(), .at = {}};
+  Vector3 turning = Vector3::Zero();
+  for (const LoadNode& node : model.loads()) {
+    const FieldLoad* field = acting_field(node, state.y);
+    if (field == nullptr) continue;
+    const Matrix3 C = field->slope(state.time, unit, at).block<3, 3>(3, 9);
+    turning -= 0.25 * Vector3(C(2, 1) - C(1, 2), C(0, 2) - C(2, 0), C(1, 0) - C(0, 1));
+  }
+  return turning;
+}
+
 /// What fields exert on all mass of a body [N], its points to first order in the elastic coordinates.
 Vector3 force_on(const Model& model, const ActingFields& fields, std::size_t body, const State& state,
                  const FrameMotion& frame) {
@@ -71,12 +84,14 @@ void FeltMotion::update(const State& state, const std::vector<BodyMotion>& motio
 
 void FeltMotion::take_fields(const State& state) {
   const ActingFields fields(model_);
+  turning_.assign(bodies_.size(), Vector3::Zero());
   std::vector<Vector3> forces(bodies_.size(), Vector3::Zero());  // that fields exert on all that hangs on a hinge
   for (std::size_t b = bodies_.size(); b-- > 0;) {
     BodyMotion& B = bodies_[b];
     const FrameMotion frame{B.R, B.p, B.rate, vector_of(seen_->frame_velocity(static_cast<int>(b), 0).linear)};
     B.acceleration -= fields.acceleration(state.time, state.y, frame);
     B.gradient = gradient_of(model_, state, frame);
+    turning_[b] = turning_of(model_, state, frame);
     forces[b] += force_on(model_, fields, b, state, frame);
     B.force -= forces[b];
     if (const int parent = model_.hinges()[b].parent; parent >= 0)

@@ -23,6 +23,11 @@ class FeltMotion {
   void update(const State& state, const std::vector<BodyMotion>& motions);
   /// One a body of the model, as at the last update.
   [[nodiscard]] const std::vector<BodyMotion>& bodies() const { return bodies_; }
+  /// ω of a body's frame [rad/s], world axes, with that of axes in which a field acts: what accelerates across a
+  /// velocity v by −2 Ω × v is to bodies as if all turned by Ω.
+  [[nodiscard]] Vector3 turning(std::size_t body) const {
+    return turning_.empty() ? bodies_[body].rate : Vector3(bodies_[body].rate + turning_[body]);
+  }
   /// What loads exert at their frames, world axes, in the order of the model's loads and of the frames of each, as at
   /// the last update.
   [[nodiscard]] std::span<const Wrench> at_frames() const { return wrenches_; }
@@ -34,6 +39,7 @@ class FeltMotion {
   const Model& model_;
   std::unique_ptr<Observation> seen_;  ///< null: there is nothing to be seen for
   std::vector<BodyMotion> bodies_;
+  std::vector<Vector3> turning_;    ///< of the axes of fields, one a body; empty: there are none
   std::vector<FrameIndex> frames_;  ///< at which loads act, load after load
   bool at_frames_ = false;          ///< some act at frames of bodies
   std::vector<FrameMotion> motions_;

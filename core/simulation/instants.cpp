@@ -49,7 +49,7 @@ Clocks::Clocks(const Model& model, const EquationsOfMotion& equations) : model_(
 void Clocks::begin(State& state) {
   if (const auto begun = place_of_begun(model_); !begun || state.y[*begun] == 0) {
     renewal_.at(state);
-    for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {});
+    for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {.begins = true});
     if (begun) state.y[*begun] = 1;
   }
   go_on_after(state.time);

@@ -60,19 +60,20 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     const BodyNode& node = model.bodies()[b];
     const double length = node.body->shape().length;
     if (node.body->shape().modes() == 0 || !(length > 0)) continue;
-    const std::optional<MeasuredPlace> place = measured_place(*node.body);
-    if (!place) continue;
-    const bool tip = place->name == "tip";
-    ends_.push_back({model.layout().modes(b),
-                     static_cast<int>(b),
-                     node.frame(place->name),
-                     seen_.expands(static_cast<int>(b)),
-                     SectionExpansion(place->at),
-                     length,
-                     place->in_words(),
-                     tip && !node.segment ? &summary.peak_deflection[node.name] : nullptr,
-                     &summary.peak_deflection_ratio[node.name],
-                     {}});
+    for (const MeasuredPlace& place : measured_places(*node.body)) {
+      const bool tip = place.name == "tip";
+      ends_.push_back({model.layout().modes(b),
+                       static_cast<int>(b),
+                       node.frame(place.name),
+                       seen_.expands(static_cast<int>(b)),
+                       SectionExpansion(place.at),
+                       length,
+                       place.in_words(),
+                       tip && !node.segment ? &summary.peak_deflection[node.name] : nullptr,
+                       &summary.peak_deflection_ratio[node.name],
+                       &summary.peak_section_angle[node.name],
+                       {}});
+    }
   }
   for (Tip& tip : tips(model)) {
     if (!tip.in_segments() || !tip.flexible) continue;
@@ -94,6 +95,7 @@ void Monitor::each_peak(const Visit& visit) {
     for (double& d : peak) visit(d);
   }
   for (auto& [body, ratio] : summary_.peak_deflection_ratio) visit(ratio);
+  for (auto& [body, angle] : summary_.peak_section_angle) visit(angle);
   for (double& effort : summary_.peak_effort) visit(effort);
   for (double& effort : summary_.peak_motion_effort) visit(effort);
 }
@@ -268,6 +270,7 @@ void Monitor::remember(Memory& memory) {
     for (double& d : peak) memory(d);
   }
   for (auto& [body, ratio] : summary_.peak_deflection_ratio) memory(ratio);
+  for (auto& [body, angle] : summary_.peak_section_angle) memory(angle);
   for (End& end : ends_) {
     for (double& d : end.rough) memory(d);
     memory(end.rough_square);

@@ -87,11 +87,15 @@ class Monitor {
     };
     std::vector<Term> terms;            ///< of x, then of y, then of z, without those that are zero
     std::array<std::size_t, 3> ends{};  ///< where those of a component end
+    std::vector<Term> turns;            ///< of the angle about x, then y, then z, to the first order
+    std::array<std::size_t, 3> turn_ends{};
     explicit SectionExpansion(const PointExpansion& e);
     struct Motion {
       Vector3 displacement = Vector3::Zero(), velocity = Vector3::Zero();
     };
     void at(const double* q, const double* u, Motion& motion) const;
+    /// Angle of the section [rad], squared.
+    [[nodiscard]] double squared_angle(const double* q) const;
   };
   static constexpr Eigen::Index whole = 3;  ///< in the place of a component: the size of a deflection
   /// A flexible body's tip, or a segment's, or the station that a body without one has in its place.
@@ -105,6 +109,7 @@ class Monitor {
     std::string name;             ///< of the place, in words
     std::array<double, 3>* peak;  ///< null: a segment's, or no tip's
     double* ratio;
+    double* angle;
     std::array<double, 3> rough{};    ///< greatest |component| of the deflection by the expansion
     double rough_square = 0;          ///< greatest squared size of the deflection by the expansion
     SectionExpansion::Motion now{};   ///< at the last accepted state, by the expansion
@@ -129,6 +134,7 @@ class Monitor {
   void look(const State& state);
   /// Brings the observation to a state, where it is not there yet.
   void see(const State& state);
+  static void look_at_angle(End& end, const double* q);
   void observe_end(std::size_t index, const State& state, const Vector3& rough, bool& seen);
   void look_within(const State& state);
   [[nodiscard]] double greatest_within(const End& end, Eigen::Index component, double h) const;

@@ -21,7 +21,23 @@ Monitor::SectionExpansion::SectionExpansion(const PointExpansion& e) {
       for (int j = i; j < modes; ++j) add(e.gamma[k](i, j) * (i == j ? 0.5 : 1.0), i, j);
     }
     ends[k] = terms.size();
+    for (int i = 0; i < modes; ++i) {
+      const double psi = e.psi(static_cast<Eigen::Index>(k), i);
+      if (psi != 0) turns.push_back({psi, i, -1});
+    }
+    turn_ends[k] = turns.size();
   }
+}
+
+double Monitor::SectionExpansion::squared_angle(const double* q) const {
+  double square = 0;
+  const Term* t = turns.data();
+  for (const std::size_t last : turn_ends) {
+    double angle = 0;
+    for (const Term* const end = turns.data() + last; t != end; ++t) angle += t->factor * q[t->i];
+    square += angle * angle;
+  }
+  return square;
 }
 
 void Monitor::SectionExpansion::at(const double* q, const double* u, Motion& motion) const {
@@ -67,6 +83,14 @@ void Monitor::observe_end(std::size_t index, const State& state, const Vector3& 
   }
   *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
   note(index, end.name, end.slot->name, end.length, d, end.peak);
+}
+
+/// At a state to which `next` has been brought.
+void Monitor::look_at_angle(End& end, const double* q) {
+  const double square = end.section.squared_angle(q);
+  if (!(square > *end.angle * *end.angle)) return;
+  const Bend bend{end.next.displacement.norm() / end.length, std::sqrt(square)};
+  if (bend.bent()) *end.angle = bend.angle;
 }
 
 bool Monitor::End::may_exceed(double h) const {
@@ -150,6 +174,7 @@ void Monitor::look(const State& state) {
     const double* const q = state.y.data() + end.slot->position;
     const double* const u = state.y.data() + model_.layout().positions + end.slot->speed;
     end.section.at(q, u, end.next);
+    look_at_angle(end, q);
     if (!end.may_exceed(h)) continue;
     more = true;
     turns = turns || end.turns(0) || end.turns(1) || end.turns(2) || end.turns(whole);

@@ -1,5 +1,7 @@
 #include "withy/core/simulation/motion_stiffness.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "withy/core/shape/section_fields.hpp"
@@ -63,6 +65,40 @@ Eigen::MatrixXd along(const std::array<Eigen::MatrixXd, 3>& gamma, const Vector3
 
 Eigen::MatrixXd reduced(const Eigen::MatrixXd& K, const Eigen::MatrixXd& S) { return S.transpose() * K * S; }
 
+/// The rotations that a hinge does not leave free in its reference pose, in the axes of its frame M; all where a motion
+/// drives it.
+Matrix3 held_rotations(const Model& model, std::size_t hinge) {
+  const Hinge& h = *model.hinges()[hinge].hinge;
+  if (h.speeds() == 0 || model.driven(hinge)) return Matrix3::Identity();
+  std::vector<double> x(h.coordinates()), rates(h.speeds());
+  h.reference(x);
+  HingeMotion motion;
+  motion.H.resize(6, static_cast<Eigen::Index>(h.speeds()));
+  h.motion(x, rates, motion);
+  constexpr double least = 1e-9;  // of an axis that is none beside those before it
+  Matrix3 held = Matrix3::Identity();
+  for (Eigen::Index k = 0; k < motion.H.cols(); ++k) {
+    const Vector3 axis = motion.H.col(k).head<3>();
+    const Vector3 rest = held * axis;
+    if (rest.norm() > least * axis.norm()) held -= rest * rest.transpose() / rest.squaredNorm();
+  }
+  return held;
+}
+
+/// The section at the inboard hinge of a body, where modes turn it and the hinge holds it.
+std::optional<HeldSection> held_root(const Model& model, std::size_t body) {
+  const HingeNode& hinge = model.hinges()[body];
+  const Frame& frame = model.bodies()[body].frames[static_cast<std::size_t>(hinge.child_frame)];
+  HeldSection root{frame.section, frame.pose.R * held_rotations(model, body) * frame.pose.R.transpose()};
+  if (root.leaves_all()) return {};
+  return root;
+}
+
+bool same_root(const std::optional<HeldSection>& a, const std::optional<HeldSection>& b) {
+  if (!a || !b) return !a && !b;
+  return a->held == b->held && same_section(a->at, b->at);
+}
+
 }  // namespace
 
 std::string motion_term_name(std::size_t term) {
@@ -83,13 +119,19 @@ std::string motion_term_name(std::size_t term) {
   return names.at(term);
 }
 
-MotionStiffness::Own::Own(const ModalShape& shape) {
+MotionStiffness::Own::Own(const ModalShape& shape, const HeldSection* root) {
   const ElasticModes modes = elastic_modes(shape);
   if (modes.frequencies.size() == 0) return;
   S = modes.vectors * modes.frequencies.cwiseInverse().asDiagonal();
+  std::vector<PointExpansion> seen;
+  for (std::size_t k = 0; root != nullptr && k < shape.particles.size(); ++k)
+    seen.push_back(root->seen(shape.particles[k].at));
   for (std::size_t term = 0; term < motion.size(); ++term) {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(shape.modes(), shape.modes());
-    for (const Particle& p : shape.particles) K += along(p.at.gamma, unit_force(term, p.mass, p.mass * p.at.X));
+    for (std::size_t k = 0; k < shape.particles.size(); ++k) {
+      const Particle& p = shape.particles[k];
+      K += along(root != nullptr ? seen[k].gamma : p.at.gamma, unit_force(term, p.mass, p.mass * p.at.X));
+    }
     motion[term] = reduced(K, S);
   }
   total.setZero(S.cols(), S.cols());
@@ -97,7 +139,10 @@ MotionStiffness::Own::Own(const ModalShape& shape) {
 }
 
 MotionStiffness::MotionStiffness(const Model& model, std::size_t body, const MotionStiffness* twin)
-    : body_(body), own_(twin != nullptr ? twin->own_ : std::make_shared<Own>(model.bodies()[body].body->shape())) {
+    : body_(body), root_(held_root(model, body)) {
+  if (twin != nullptr && !same_root(root_, twin->root_)) twin = nullptr;
+  own_ = twin != nullptr ? twin->own_
+                         : std::make_shared<Own>(model.bodies()[body].body->shape(), root_ ? &*root_ : nullptr);
   if (own_->S.size() == 0) return;
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const HingeNode& hinge = model.hinges()[h];
@@ -125,9 +170,50 @@ std::shared_ptr<const MotionStiffness::Section> MotionStiffness::section_of(cons
     for (const Loaded& l : known->loaded_)
       if (same_section(l.section->at, at)) return l.section;
   }
-  const auto stiffness = [&](std::size_t axis) { return reduced(at.gamma[axis], own_->S); };
+  return made(at);
+}
+
+std::shared_ptr<const MotionStiffness::Section> MotionStiffness::made(const PointExpansion& at) const {
+  const std::array<Eigen::MatrixXd, 3> gamma = seen(at).gamma;
+  const auto stiffness = [&](std::size_t axis) { return reduced(gamma[axis], own_->S); };
   return std::make_shared<const Section>(Section{at, {stiffness(0), stiffness(1), stiffness(2)}});
 }
+
+MotionStiffness::MotionStiffness(const Model& model, const Body& whole, const std::vector<int>& segments)
+    : body_(static_cast<std::size_t>(segments.front())), own_(std::make_shared<Own>(whole.shape(), nullptr)) {
+  if (own_->S.size() == 0) return;
+  const auto place_of = [&](FrameIndex at) -> std::optional<double> {
+    double x = 0;
+    for (const int b : segments) {
+      const BodyNode& node = model.bodies()[static_cast<std::size_t>(b)];
+      if (b == at.body) return x + node.frames[static_cast<std::size_t>(at.frame)].section.X.x();
+      x += node.body->shape().length;
+    }
+    return {};
+  };
+  const auto section = [&](double x) {
+    const auto at = whole.station(std::min(x, whole.shape().length));  // lengths of segments add up but for rounding
+    return at ? made(*at) : nullptr;
+  };
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const HingeNode& hinge = model.hinges()[h];
+    const bool inside = std::find(segments.begin(), segments.end(), static_cast<int>(h)) != segments.end();
+    const auto outboard = inside || hinge.parent < 0 ? std::nullopt : place_of({hinge.parent, hinge.parent_frame});
+    if (outboard)
+      if (auto at = section(*outboard)) stations_.push_back({h, 1, std::move(at)});
+  }
+  std::size_t index = 0;
+  for (const LoadNode& node : model.loads()) {
+    for (const FrameIndex& at : node.load->frames()) {
+      const auto x = at.body >= 0 && at.frame >= 0 ? place_of(at) : std::nullopt;
+      if (x)
+        if (auto loaded = section(*x)) loaded_.push_back({index, std::move(loaded)});
+      ++index;
+    }
+  }
+}
+
+PointExpansion MotionStiffness::seen(const PointExpansion& at) const { return root_ ? root_->seen(at) : at; }
 
 LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads) {
   LoadRatio ratio;
@@ -151,7 +237,10 @@ LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies, std::
   const Eigen::Index last = total.rows() - 1;
   ratio.least = own_->solver.eigenvalues()[0];
   ratio.greatest = own_->solver.eigenvalues()[last];
-  const auto v = own_->solver.eigenvectors().col(ratio.greatest > -ratio.least ? last : 0);
+  // Eigenvalues are known to rounding of the greatest of them.
+  const double rounding = static_cast<double>(total.rows()) * std::numeric_limits<double>::epsilon();
+  ratio.stiffens = ratio.greatest * (1 - rounding) > -ratio.least;
+  const auto v = own_->solver.eigenvectors().col(ratio.stiffens ? last : 0);
   // vᵀ K v without a temporary.
   const auto work = [&v](const Eigen::MatrixXd& K) {
     double sum = 0;

@@ -57,7 +57,8 @@ class Run final : public SteppingObserver {
   }
 
   Stop to_end() {
-    const SteppingEnd end = loop_.run(*this);
+    SteppingEnd end = loop_.run(*this);
+    while (options_.past_stops && end.cause == SteppingEnd::Cause::event) end = loop_.run(*this);
     if (end.cause == SteppingEnd::Cause::stopped) return stop_;
     return stop_of(end, model_, equations_, loop_.state(), loop_.stepper().statistics());
   }
@@ -136,7 +137,7 @@ class Run final : public SteppingObserver {
     const auto of_that_name = [&](const RunEvent& e) { return e.name == event.name; };
     const auto watched = actions_.watched();
     const auto stated = std::find_if(watched.begin(), watched.end(), of_that_name);
-    if (stated != watched.end() && stated->stops) stopped_by_.push_back(event.name);
+    if (stated != watched.end() && stated->stops && !options_.past_stops) stopped_by_.push_back(event.name);
   }
   void acted(const State& before, const State& after) override { monitor_.pass_event(before, after); }
   void switched() override { ++summary_.switchings; }
@@ -338,6 +339,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   const double mean_step =
       (summary.reached - initial.time) / static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));
   if (stop.status == RunStatus::completed) {
+    summary.ended_by_event = !run.stopped_by().empty() && summary.reached < options.end;
     summary.message = message_of_completed(run, model, summary);
     const std::string imbalanced = run.monitor().greatest_speed() > options.least_speed
                                        ? imbalance(summary, options, integrator, mean_step)

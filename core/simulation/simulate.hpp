@@ -69,6 +69,7 @@ struct RunOptions {
   double most_seconds = 0;            ///< wall time; 0: unlimited
   std::function<bool()> interrupted;  ///< asked between steps
   std::vector<RunEvent> events;       ///< looked for on the dense output; those that do not stop do not change the run
+  bool past_stops = false;            ///< an event that ends a run acts as any other, and the run goes on to its end
   std::function<bool()> checkpoint_due;               ///< asked between steps: whether `checkpoint` is to be called
   std::function<void(const Checkpoint&)> checkpoint;  ///< called then and when the run is interrupted
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: begin at the initial state
@@ -99,7 +100,8 @@ struct RunSummary {
   /// had not changed the sign of its determinant and energy and work balanced to within the limit or half of the
   /// energy.
   State final;
-  double reached = 0;  ///< time of the last accepted state [s]
+  double reached = 0;           ///< time of the last accepted state [s]
+  bool ended_by_event = false;  ///< completed where an event of the scene ended it, before its time
   /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and, between
   /// them, along the cubic through their coordinates and rates; body axes x, y, z [m]. Of a body in segments under its
   /// own name, over the accepted steps. None of these depends on the output interval.
@@ -107,6 +109,9 @@ struct RunSummary {
   /// Of each body that has modes and a measured station (Body::measured_station), the greatest distance of that from
   /// its undeformed place, over the body's length.
   std::map<std::string, double> peak_deflection_ratio;
+  /// Of each of these the greatest angle [rad] by which the section there is turned against the body's frame, to the
+  /// first order in the coordinates, over the accepted steps at which the body is bent (Bend).
+  std::map<std::string, double> peak_section_angle;
   /// Greatest |effort| of the loads on each generalized speed over all accepted steps, their middles and the outputs.
   std::vector<double> peak_effort;
   /// The same of the efforts that motions need.

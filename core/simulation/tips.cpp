@@ -33,9 +33,9 @@ std::vector<Tip> ends(const Model& model, bool measured) {
     if (node.segment && node.segment->index > 0) continue;
     if (node.frame("tip") >= 0) all.push_back(tip_of(model, name, "tip", model.segments(name)));
     if (!measured || node.segment || node.body->shape().modes() == 0) continue;
-    const std::optional<MeasuredPlace> place = measured_place(*node.body);
-    if (place && place->name != "tip" && node.frame(place->name) >= 0)
-      all.push_back(tip_of(model, name, place->name, {model.body(name)}));
+    for (const MeasuredPlace& place : measured_places(*node.body))
+      if (place.name != "tip" && node.frame(place.name) >= 0)
+        all.push_back(tip_of(model, name, place.name, {model.body(name)}));
   }
   return all;
 }
@@ -44,6 +44,14 @@ std::vector<Tip> ends(const Model& model, bool measured) {
 
 std::vector<Tip> tips(const Model& model) { return ends(model, false); }
 std::vector<Tip> measured_ends(const Model& model) { return ends(model, true); }
+
+double section_angle(const Model& model, std::span<const double> y, const Tip& tip) {
+  const Slot* slot = model.layout().modes(static_cast<std::size_t>(tip.tip.body));
+  if (tip.in_segments() || slot == nullptr) return 0;
+  const BodyNode& node = model.bodies()[static_cast<std::size_t>(tip.tip.body)];
+  const Matrix3X& psi = node.frames[static_cast<std::size_t>(tip.tip.frame)].section.psi;
+  return (psi * Eigen::Map<const Eigen::VectorXd>(y.data() + slot->position, psi.cols())).norm();
+}
 
 std::array<double, 3> deflection(const Observation& seen, const Tip& tip) {
   if (!tip.in_segments()) return seen.deflection(tip.tip.body, tip.tip.frame);

@@ -69,11 +69,19 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
               MotionStiffness(model, b, fresh ? nullptr : &twin->stiffness),
               fresh ? std::make_shared<std::vector<Family>>(families_of(shape)) : twin->families,
               {}};
-    const std::optional<MeasuredPlace> place = measured_place(*node.body);
-    BodyValidity v{.name = node.name, .station = place ? place->name : "", .load = {}, .highest = {}};
+    BodyValidity v{.name = node.name, .station = "", .beside = {}, .load = {}, .whole = {}, .highest = {}};
+    for (const MeasuredPlace& place : measured_places(*node.body)) {
+      if (v.station.empty()) {
+        v.station = place.name;
+      } else {
+        v.beside.push_back(place.name);
+      }
+    }
     for (const Family& family : *w.families)
       v.highest.push_back({family.name, family.highest, 0, family.coordinates.size()});
     w.energies.resize(w.families->size());
+    if (node.segment && node.segment->index == 0 && node.segment->body != nullptr)
+      w.whole.emplace(model, *node.segment->body, model.segments(node.segment->whole));
     bodies_.push_back(std::move(w));
     validity_.bodies.push_back(std::move(v));
   }
@@ -166,6 +174,10 @@ bool ValidityWatch::look_at_loads(const State& state) {
     BodyValidity& v = validity_.bodies[i];
     const LoadRatio load = bodies_[i].stiffness.evaluate(felt_.bodies(), felt_.at_frames());
     v.buckling = std::max(v.buckling, -load.least);
+    if (bodies_[i].whole) {
+      const LoadRatio whole = bodies_[i].whole->evaluate(felt_.bodies(), felt_.at_frames());
+      if (whole.size() > v.whole.size()) v.whole = whole;
+    }
     if (load.size() > v.load.size()) {
       v.load = load;
       v.load_time = state.time;
@@ -179,7 +191,7 @@ bool ValidityWatch::look_at_motion(const State& state) {
   frequency_.update(state.y, work_);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Watched& w = bodies_[i];
-    const double rate = motion_.bodies()[w.body].rate.norm();
+    const double rate = felt_.turning(w.body).norm();
     w.sampled = std::max(w.sampled, rate);
     note_rate(i, rate, state.time);
   }
@@ -230,9 +242,12 @@ void ValidityWatch::remember(Memory& memory) {
     memory(v.fundamental);
     memory(v.rate_ratio);
     memory(v.rate_time);
-    memory(v.load.least);
-    memory(v.load.greatest);
-    for (double& share : v.load.shares) memory(share);
+    for (LoadRatio* load : {&v.load, &v.whole}) {
+      memory(load->least);
+      memory(load->greatest);
+      memory(load->stiffens);
+      for (double& share : load->shares) memory(share);
+    }
     memory(v.load_time);
     memory(v.buckling);
   }

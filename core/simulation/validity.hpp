@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct HighestMode {
 /// a run, the steps at which bodies turned fastest, and the busiest of every few steps.
 struct BodyValidity {
   std::string name;
-  std::string station;  ///< whose deflection is held against the body's length (measured_place)
+  std::string station;              ///< whose deflection is held against the body's length (measured_place)
+  std::vector<std::string> beside;  ///< further ones; the greatest counts (measured_places)
   /// ω₁ of the structure that the body is part of, as it is carried and loaded: with what hangs on it, hinges held, at
   /// the last sample up to rate_time [rad/s].
   double fundamental = 0;
@@ -37,6 +39,7 @@ struct BodyValidity {
   double rate_time = 0;   ///< when [s]
   LoadRatio load;         ///< where its size is greatest
   double load_time = 0;   ///< when [s]
+  LoadRatio whole;        ///< of the first of several segments: the same of the whole as one piece
   double buckling = 0;    ///< greatest compressive load over the buckling load, ≥ 0
   std::vector<HighestMode> highest;
 };
@@ -108,6 +111,7 @@ class ValidityWatch {
     std::shared_ptr<std::vector<Family>> families;  ///< equal bodies share them
     std::vector<Energy> energies;                   ///< of each family
     double sampled = 0;                             ///< greatest rate of the frame in the samples [rad/s]
+    std::optional<MotionStiffness> whole = {};      ///< of a body in segments, at the first of them
   };
   static std::vector<Family> families_of(const ModalShape& shape);
   void sample_due();

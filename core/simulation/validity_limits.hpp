@@ -26,5 +26,8 @@ inline double rate_limit(const Terms& terms, bool one_direction) {
 inline constexpr double load_limit = 0.1;
 /// Tip deflection over length up to which deflections are small.
 inline constexpr double deflection_limit = 0.1;
+/// Angle [rad] of a section of a bent body up to which angles are small: the one by which the end of an evenly bent
+/// body has turned that is deflected as far as deflections are small.
+inline constexpr double angle_limit = 2 * deflection_limit;
 
 }  // namespace withy

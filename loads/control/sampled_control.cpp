@@ -34,17 +34,20 @@ class SampledControl : public BoundControl, public DiscretePart, public SampledP
              const Crossing& /*crossing*/, std::span<double> /*discrete*/,
              std::span<double> /*scratch*/) const noexcept override {}
   std::vector<std::string> measures() const override { return names(); }
-  void renew_measured(double t, const Crossing& /*crossing*/, std::span<const double> w,
+  void renew_measured(double t, const Crossing& crossing, std::span<const double> w,
                       std::span<double> discrete) const noexcept override {
     const std::span<double> z = discrete.subspan(1, count_), queue = discrete.subspan(1 + count_);
+    // Switched off and on between two samples it has met none while it was off, and what it knew is of before.
+    if (crossing.begins) discrete[0] = 0;
     // What begins between two samples waits for the next: nothing is on its way for less than the delay.
-    if (discrete[0] == 0 && ends().delay > 0 && !at_sample(t)) return;
+    if (crossing.begins && ends().delay > 0 && !at_sample(t)) return;
     if (discrete[0] == 0) block().begin(t, w, z);
     discrete[0] = 1;
     const std::size_t p = outputs();
     std::copy(queue.begin() + static_cast<std::ptrdiff_t>(p), queue.end(), queue.begin());
     block().sample(t, w, z, queue.last(p));
   }
+  bool waits(std::span<const double> discrete) const override { return discrete[0] == 0; }
   bool gives_steps() const override { return block().gives_steps(); }
   bool draws() const override { return block().draws(); }
   void pass_idle(std::span<double> discrete) const noexcept override {

@@ -39,6 +39,22 @@ correlation: {of: [gravity.2], matrix: [[1]]}
     EXPECT_THAT(said, HasSubstr(file + part)) << said;
 }
 
+TEST(Plans, LookUpNamesWhateverElseIsWrong) {
+  const PlanFolder folder;
+  const std::string said = folder.errors(R"(vary:
+  bodies.rod.mass: {grid: [1, -3]}
+  gravity.1: {normal: {mean: -9, deviation: -1}}
+cases: 3
+sede: 3
+keep: {final: [pivto]}
+derived: {gravity.0: 2 * bodies.rodd.mass}
+)");
+  EXPECT_THAT(said, AllOf(HasSubstr("/bodies/rod/mass: got -3"), HasSubstr("need a deviation above 0"),
+                          HasSubstr("unknown key \"sede\""), HasSubstr("no result \"pivto\"; did you mean 'pivot'?"),
+                          HasSubstr("bodies.rodd.mass")));
+  EXPECT_THAT(said, testing::Not(HasSubstr("nothing is drawn"))) << "what is drawn is what is wrong";
+}
+
 TEST(Plans, TryEveryValueThatStandsInThemInTheScene) {
   const PlanFolder folder;
   const std::string said = folder.errors(R"(vary:

@@ -2,8 +2,12 @@
 #include "withy/campaign/store.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <initializer_list>
 
 #include "withy/results/results_error.hpp"
@@ -57,6 +61,23 @@ TEST(Sweeps, ADamagedDescriptionIsNoticedAndCostsNoCase) {
   folder.write("store/store.json", other);
   EXPECT_THROW(Store(folder / "store", folder.plan(with_seed_4), false), ResultsError)
       << "its cases are another plan's";
+}
+
+/// Parts of tables are named after their processes: no process has a number beyond Linux's greatest, 4194304.
+TEST(Sweeps, CollectingClearsAwayWhatKilledProcessesHaveLeftOfATable) {
+  const PlanFolder folder;
+  run(folder, folder.plan(twelve), "store", {1, 1, 1, {}});
+  std::array<char, 256> host{};
+  ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+  const std::string here = std::string(".") + host.data(), part = "store/table.csv.part";
+  const std::string dead = part + "4194305" + here, alive = part + "1" + here, elsewhere = part + "4194305.else",
+                    old = part + "4194306.else";
+  for (const std::string& name : {dead, alive, elsewhere, old}) folder.write(name, "half");
+  std::filesystem::last_write_time(folder / old,
+                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(25));
+  collect(folder / "store");
+  for (const std::string& gone : {dead, old}) EXPECT_FALSE(std::filesystem::exists(folder / gone)) << gone;
+  for (const std::string& kept : {alive, elsewhere}) EXPECT_TRUE(std::filesystem::exists(folder / kept)) << kept;
 }
 
 TEST(Sweeps, AStoreOfAnotherPlanIsNotMixedWith) {

@@ -254,6 +254,32 @@ TEST(Tune, GoesRoundRunsThatFail) {
   EXPECT_THAT(folder.tuned(question, never).trouble, HasSubstr("an event of the scene ends it there"));
 }
 
+TEST(Tune, WritesItsSceneInPlaceOfAnOlderFileButOfNoneThatIsRead) {
+  const TuneFolder folder;
+  folder.write("scene.yaml", block);
+  folder.write("old.yaml", "mine");
+  folder.write("data.csv", "t[s],slide\n");
+  const auto name = [&](const char* file) { return (folder / file).string(); };
+  SceneValues values = SceneValues::read(name("scene.yaml"));
+  const study::Prepared prepared = study::prepare(values, test::plugins());
+  const std::vector<study::Change> changes = {{"loads.spring.stiffness", Value(58.0)}};
+  EXPECT_NO_THROW(check_written(prepared, name("old.yaml"), name("data.csv"), test::plugins()));
+  write_changed(values, changes, name("old.yaml"), test::plugins());
+  EXPECT_THAT(folder.read("old.yaml"), HasSubstr("stiffness: 58, damping: 0.8}   # as the maker says"));
+  for (const char* read : {"scene.yaml", "data.csv"})
+    EXPECT_THROW(check_written(prepared, name(read), name("data.csv"), test::plugins()), study::InputError) << read;
+  EXPECT_THROW(write_changed(values, changes, name("scene.yaml"), test::plugins()), study::InputError);
+  EXPECT_EQ(folder.read("scene.yaml"), block);
+  // What the command line changes is told before anything is computed; outputs that it asks for change no scene.
+  values.choose_formulation("linear", "the test");
+  EXPECT_THROW(check_written(study::prepare(values, test::plugins()), name("old.yaml"), "", test::plugins()),
+               study::InputError);
+  SceneValues asked = SceneValues::read(name("scene.yaml"));
+  asked.set_text("outputs=[slide.effort]");
+  EXPECT_NO_THROW(check_written(study::prepare(asked, test::plugins()), name("old.yaml"), "", test::plugins()));
+  EXPECT_NO_THROW(write_changed(asked, changes, name("old.yaml"), test::plugins()));
+}
+
 TEST(Tune, WritesASceneThatFits) {
   const TuneFolder folder;
   folder.measure({}, 1e-4, 2);

@@ -142,6 +142,39 @@ hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}}
   EXPECT_NEAR(free.at("state").at("hinges").at("pivot").at("position").at(0), -std::acos(0.0), 1e-9);
 }
 
+/// Of rotations there is a coordinate more than rates: each has its own row, with its own name.
+TEST(Equilibrium, ShowsRatesOfRotationsByTheirNames) {
+  const Folder folder;
+  folder.write("bus.yaml", R"(format: withy/1
+bodies: {bus: {type: rigid, mass: 10, inertia: [1, 1.7, 1.5, 0, 0, 0]}}
+hinges: {f: {type: free, parent: world, child: bus}}
+initial: {hinges: {f: {position: {orientation: [1, 0, 0, 0], position: [7, 8, 9]}, rate: [0, 0, 0.8, 4, 5, 6]}}}
+)");
+  const Finished f = withy(folder, {"equilibrium", "bus.yaml", "--lock", "f.5"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  for (const char* row :
+       {"f\\.qz +0 +1 +- +- +-", "f\\.wz +- +0\\.8 +no +-", "f\\.vx +- +4 +no +-", "f\\.vz +- +6 +yes +"})
+    EXPECT_THAT(f.out, testing::ContainsRegex(row)) << f.out;
+}
+
+TEST(Equilibrium, SaysWhetherItIsStable) {
+  const Folder folder;
+  folder.write("standing.yaml", R"(format: withy/1
+gravity: [0, -9.81, 0]
+bodies: {bob: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}}
+initial: {hinges: {pivot: {position: [1.5]}}}
+)");
+  const Finished f = withy(folder, {"equilibrium", "standing.yaml"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, testing::AllOf(HasSubstr("steady but unstable after"), HasSubstr("grows by 4.04/s")));
+  const json stability = result(folder, {"equilibrium", "standing.yaml", "--json"}).at("stability");
+  EXPECT_EQ(stability.at("stable"), false);
+  EXPECT_EQ(stability.at("growing"), 1);
+  EXPECT_EQ(stability.at("dominated_by"), "pivot.0");
+  EXPECT_NEAR(stability.at("growth"), std::sqrt(9.81 / 0.6), 1e-9);
+}
+
 TEST(Equilibrium, SaysWhatNothingHolds) {
   const Folder folder;
   folder.write("falling.yaml", R"(format: withy/1

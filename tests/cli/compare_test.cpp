@@ -67,6 +67,42 @@ TEST(Compare, TableSaysWhyARunStopped) {
   EXPECT_THAT(compare(folder, {"--formulations", "inconsistent,quadratic"}).out, HasSubstr(why));
 }
 
+/// At the start all runs are alike: that tells nothing of how far they are apart later.
+TEST(Compare, ARunWithNoOutputInCommonButTheStartHasNoErrors) {
+  const Folder folder;
+  std::vector<std::string> ends_early = {"--set",          "loads.slew.time_scale=1.2",
+                                         "--formulations", "inconsistent",
+                                         "--reference",    "exact"};  // singular at 0.0365 s, outputs are 0.05 s apart
+  const std::string text = compare(folder, ends_early).out;
+  EXPECT_THAT(text, testing::ContainsRegex("singular at 0.0365[0-9]* s +- +-\n"));
+  EXPECT_THAT(text, HasSubstr("No errors: it and the reference have no output in common but the start"));
+  ends_early.emplace_back("--json");
+  const json distance = json::parse(compare(folder, ends_early).out).at("runs").at(0).at("distance");
+  EXPECT_TRUE(distance.at("hinges").empty());
+  EXPECT_TRUE(distance.at("tips").empty());
+  EXPECT_EQ(distance.at("until"), 0.0);
+  ends_early.insert(ends_early.end(), {"--set", "time.output=0.001"});
+  const json told = json::parse(compare(folder, ends_early).out).at("runs").at(0).at("distance");
+  EXPECT_NEAR(told.at("until"), 0.036, 1e-12);
+  EXPECT_GT(told.at("hinges").at("elbow"), 0.0);
+}
+
+/// x = t reaches 0.6 at 0.6 s of 2 s.
+TEST(Compare, ARunThatAnEventEndsSaysWhen) {
+  const Folder folder;
+  folder.write("block.yaml", R"(format: withy/1
+time: {end: 2, output: 0.25}
+bodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+initial: {hinges: {slide: {rate: [1]}}}
+events: {there: {hinge: slide, value: 0.6, stop: true}}
+)");
+  const std::string text = withy(folder, {"compare", "block.yaml", "--formulations", "linear,quadratic"}).out;
+  EXPECT_THAT(text, HasSubstr("completed by an event at 0.6 s"));
+  EXPECT_THAT(text, HasSubstr("linear: The event 'there' ended the run at t = 0.6 s."));
+  EXPECT_THAT(withy(folder, {"run", "block.yaml", "--out", "out"}).out, HasSubstr("completed by an event at 0.6 s"));
+}
+
 TEST(Compare, ReferenceIsRunWhereItIsNotListed) {
   const Folder folder;
   const Finished f = compare(folder, {"--formulations", "ruthless", "--reference", "consistent", "--json"});

@@ -113,6 +113,14 @@ TEST(Inspect, TextShowsTheTreeAndJsonTheSame) {
   const Finished text = withy(folder, {"inspect", "scenes/two-link-slew.yaml"});
   for (const json& body : j.at("bodies")) EXPECT_THAT(text.out, HasSubstr("─ " + body.at("name").get<std::string>()));
   for (const json& plugin : j.at("plugins")) EXPECT_THAT(text.out, HasSubstr(plugin.at("name").get<std::string>()));
+  EXPECT_EQ(j.at("families").at(0).at("body"), "link1");
+  EXPECT_EQ(j.at("families").at(0).at("modes"), 2);
+  EXPECT_THAT(text.out, HasSubstr("link1: 2 bending_y clamped-free; link2: 2 bending_y clamped-free"));
+  // The state's limits, as a run that ends where it begins has them.
+  ASSERT_EQ(withy(folder, {"run", "scenes/two-link-slew.yaml", "--set", "time.end=0", "--out", "still"}).status, 0);
+  const json still = json::parse(folder.read("still/run.json")).at("certificate").at("indicators");
+  EXPECT_EQ(j.at("indicators"), still);
+  EXPECT_THAT(text.out, HasSubstr("tip deflection of 'link1' over its length: 0, limit 0.1"));
   EXPECT_THAT(withy(folder, {"inspect", "scenes/spinning-boom.yaml"}).out,
               HasSubstr("motion spin: spin-up of hinge axle"));
 }

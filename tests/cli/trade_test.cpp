@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <boost/property_tree/xml_parser.hpp>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -112,6 +114,61 @@ TEST(Trade, ErrorsAreThoseThatCompareMeasures) {
   const std::vector<double> exact = with_two_modes("exact"), linear = with_two_modes("linear");
   ASSERT_FALSE(exact.empty());
   for (const double error : linear) EXPECT_NEAR(error, real, exact.front() + 1e-6);
+}
+
+TEST(Trade, NamesTheCheapestWithinTheErrorsAskedFor) {
+  const Folder folder;
+  const Finished f = trade(folder, {"--accuracy", "20%,5%", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out), cheapest = j.at("cheapest");
+  ASSERT_EQ(cheapest.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double within = i == 0 ? 0.2 : 0.05;
+    EXPECT_DOUBLE_EQ(cheapest[i].at("within").get<double>(), within);
+    double least = std::numeric_limits<double>::infinity();
+    for (const json& p : j.at("points"))
+      if (p.at("status") == "completed" && p.at("relative_error") <= within)
+        least = std::min(least, p.at("cpu_seconds").get<double>());
+    if (std::isinf(least)) {
+      EXPECT_TRUE(cheapest[i].at("point").is_null());
+    } else {
+      EXPECT_EQ(j.at("points").at(cheapest[i].at("point").get<std::size_t>()).at("cpu_seconds"), least);
+    }
+  }
+  EXPECT_THAT(trade(folder, {"--accuracy", "5%"}).out, HasSubstr("within 5 %"));
+  EXPECT_EQ(trade(folder, {"--accuracy", "2mm"}).status, 2) << "lengths are for advise";
+  EXPECT_EQ(trade(folder, {"--accuracy", "5%", "--limit", "1%", "--over", "time.end=0.1:0.3"}).status, 2);
+}
+
+/// A model that came to such an event early would be measured, and cost, up to there alone: the error of the whole time
+/// is that without the event, which does nothing else.
+TEST(Trade, EventsThatEndARunEndNoneOfItsPoints) {
+  const Folder folder;
+  const auto points = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "trade",          "scenes/two-link-slew.yaml",
+        "--set",          "time.end=0.3",
+        "--set",          "outputs={df: {type: frame, of: link2.tip, in: link2, show: position}}",
+        "--formulations", "linear,quadratic",
+        "--modes",        "1",
+        "--tolerances",   "1e-6",
+        "--integrators",  "dopri5",
+        "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished f = withy(folder, arguments);
+    EXPECT_EQ(f.status, 0) << f.err;
+    return json::parse(f.out).at("points");
+  };
+  const json whole = points({});
+  const json stopped = points({"--set", "events={there: {signal: df.y, value: 0.011, stop: true}}"});  // at 0.12 s
+  ASSERT_EQ(whole.size(), 2U);
+  ASSERT_EQ(stopped.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(stopped[i].at("status"), "completed");
+    for (const char* error : {"hinge_error", "tip_error", "relative_error"})
+      EXPECT_NEAR(stopped[i].at(error), whole[i].at(error), 1e-5 * whole[i].at(error).get<double>()) << error;
+    EXPECT_GE(stopped[i].at("steps"), whole[i].at("steps"));
+  }
 }
 
 TEST(Trade, ContinuesWithWhatIsMissing) {

@@ -130,6 +130,11 @@ TEST(Lanes, equations_without_lanes_say_why) {
   EXPECT_EQ(lane_equations(*consistent.equations), nullptr);
   EXPECT_EQ(lane_refusal(*consistent.equations), "the formulation is none of the symmetric ones");
   EXPECT_EQ(lane_refusal(*exact.equations), "a beam moves by exact kinematics");
+  const std::string tree = lane_chain(1, true, "modes: 2", false);
+  const Case locked(tree + "events:\n  latch: {at: 0.5, do: {lock: h2}}\n", "quadratic"),
+      stopped(tree + "events:\n  halt: {at: 0.5, stop: true}\n", "quadratic");
+  EXPECT_EQ(lane_refusal(*locked.equations), "events lock or let go of hinges, and the equations are others then");
+  EXPECT_EQ(lane_refusal(*stopped.equations), "") << "the equations stay the same";
 }
 
 }  // namespace

@@ -142,6 +142,42 @@ TEST(HostedSimulation, goes_back_to_snapshots_of_its_own_scene_alone) {
   EXPECT_EQ(refusal(busy_scene().set("time.end", 7).set("name", "x").set("initial.hinges.axle.position", "[0.2]")), "");
 }
 
+/// What a run shows has no part in its steps, whatever plugins it takes to show it; what a load measures has.
+TEST(HostedSimulation, goes_back_where_outputs_that_nothing_names_are_others) {
+  Simulation first(busy_scene());
+  first.step(0.1);
+  const Snapshot kept = first.snapshot();
+  const auto refusal = [](Simulation& simulation, const Snapshot& snapshot) -> std::string {
+    try {
+      simulation.restore(snapshot);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return {};
+  };
+  first.step(0.2);
+  for (const char* outputs : {"{mid: {type: frame, of: boom.tip}}", "{drive: {type: effort, hinge: axle}}", "{}"}) {
+    Simulation other(busy_scene().set("outputs", outputs));
+    EXPECT_EQ(refusal(other, kept), "") << outputs;
+    other.step(0.2);
+    EXPECT_EQ(other.output("axle"), first.output("axle")) << outputs;
+  }
+  const auto measuring = [](const char* seen) {
+    return Scene::parse(library(), std::string(R"(format: withy/1
+time: {end: 1, output: 0.1}
+bodies: {arm: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {end: {position: [1, 0, 0]}}}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}}
+loads: {servo: {type: pid, of: seen.y, hinge: axle, proportional: 1, reference: 0.5}}
+outputs: )") + seen);
+  };
+  Simulation outside(measuring("{seen: {type: frame, of: arm.end}}"));
+  Simulation more(measuring("{seen: {type: frame, of: arm.end}, other: {type: effort, hinge: axle}}"));
+  Simulation inside(measuring("{seen: {type: frame, of: arm.end, in: arm}}"));
+  outside.step(0.1);
+  EXPECT_EQ(refusal(more, outside.snapshot()), "");
+  EXPECT_THAT(refusal(inside, outside.snapshot()), HasSubstr("of another scene"));
+}
+
 TEST(HostedSimulation, takes_no_numbers_that_are_not_a_whole_snapshot) {
   Simulation simulation(busy_scene());
   simulation.step(0.1);

@@ -110,6 +110,45 @@ TEST(SampledController, conforms_to_the_suite) {
       *s.scene.model);
 }
 
+// Off and on again between two of its samples, of which it met none while it was off: it begins anew all the same, its
+// integral at zero, and takes a sample there.
+TEST(SampledController, begins_anew_when_it_was_off_for_less_than_a_sample) {
+  const double J = 0.2, period = 0.02, off = 0.513, on = 0.516;
+  test::LoadedScene s(turntable + R"(loads:
+  servo: {type: pid, hinge: axle, proportional: 4, integral: 8, reference: 0.5, sample: 0.02}
+initial: {hinges: {axle: {position: [0.2], rate: [0.2]}}}
+events:
+  stop: {at: 0.513, do: {switch_off: servo}}
+  go: {at: 0.516, do: {switch_on: servo}}
+)",
+                      {"time={end: 0.8, output: 0.01}"});
+  double x = 0.2, v = 0.2, tau = 0, integral = 0, last = 0;
+  const auto move = [&](double to) {
+    const double h = to - last;
+    x += h * v + h * h / (2 * J) * tau;
+    v += h / J * tau;
+    last = to;
+  };
+  const auto sample = [&] {
+    tau = 4 * (0.5 - x) + integral;
+    integral += period * 8 * (0.5 - x);
+  };
+  int next = 0;
+  bool is_off = false, is_on = false;
+  for (const State& state : s.run()) {
+    for (; next * period <= state.time; ++next) {
+      if (!is_off && next * period > off) move(off), tau = 0, is_off = true;
+      if (!is_on && next * period > on) move(on), integral = 0, sample(), is_on = true;
+      move(next * period);
+      sample();
+    }
+    const double h = state.time - last;
+    // No output falls between the events and the sample after them.
+    EXPECT_NEAR(s.position(state, "axle"), x + h * v + h * h / (2 * J) * tau, 1e-10) << state.time;
+  }
+  EXPECT_TRUE(is_on);
+}
+
 // Pulses of a constant effort between the zeros of s = x: all arcs are parabolas. From x = 0.5 at rest, −τ until
 // x = off, then coasting at v = −√(2 τ/J (x₀ − off)) to x = −on, braking there and back, and so on between the two.
 TEST(HingeRelay, switches_where_its_signal_says) {

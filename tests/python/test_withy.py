@@ -335,6 +335,16 @@ def test_studies_give_what_the_program_prints(slew):
     assert scene.linearize(inputs="all")["inputs"] == scene.linearize(inputs=["all"])["inputs"]
 
 
+def test_a_comparison_that_names_no_formulations_is_of_those_that_fit():
+    loop = withy.load(SCENES / "gallery" / "four-bar.yaml").set("time.end", 0.05)
+    compared = loop.compare()
+    assert [r["formulation"] for r in compared["runs"]] == ["ruthless", "quadratic"]
+    assert [left["formulation"] for left in compared["left_out"]] == ["inconsistent", "consistent"]
+    assert all("loop" in left["reason"] for left in compared["left_out"])
+    # What the command has in the list "runs".
+    assert {"formulation", "points"} <= set(withy.load(SCENES / "pendulum.yaml").modes())
+
+
 def test_results_are_drawn(slew, tmp_path):
     pytest.importorskip("matplotlib")
     axes = slew.run().plot("shoulder", "elbow")

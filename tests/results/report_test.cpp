@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <sstream>
 
 #include "scratch.hpp"
 #include "withy/results/certificate_text.hpp"
@@ -19,6 +20,7 @@
 #include "withy/results/report/solids.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/run_text.hpp"
+#include "withy/results/svg_plot.hpp"
 #include "withy/results/table_picture.hpp"
 #include "withy/results/terminal_plot.hpp"
 
@@ -292,6 +294,28 @@ TEST(TablePicture, TimeIsThatOfTheRunAlsoWhereAColumnHasGaps) {
   const std::string text = terminal_plot({"run"}, panels);
   EXPECT_THAT(text, HasSubstr("7000000.49 |")) << text;
   EXPECT_THAT(text, HasSubstr("1049 s")) << text;
+}
+
+/// Where a column has no number nothing was measured: a line across would show what was not.
+TEST(TablePicture, LinesDoNotCrossGaps) {
+  DecimatedTable table(100, 0);
+  table.begin({{"t", "s"}, {"x", "m"}});
+  for (int i = 0; i < 50; ++i) table.row(std::vector<double>{0.1 * i, i >= 10 && i < 40 ? std::nan("") : 1.0 + i % 2});
+  const std::vector<Panel> panels = table_panels({{"run", &table}}, {"x"});
+  ASSERT_EQ(panels.size(), 1U);
+  EXPECT_EQ(panels[0].curves[0].x.size(), 20U);
+  EXPECT_EQ(panels[0].curves[0].behind_gaps, std::vector<std::size_t>{10});
+  const std::string picture = svg_plot("run", {"run"}, panels);
+  std::size_t lines = 0;
+  for (std::size_t at = 0; (at = picture.find("<polyline", at)) != std::string::npos; ++at) ++lines;
+  EXPECT_EQ(lines, 2U);
+  // Between 0.9 s and 4 s the terminal shows nothing either: of 4.9 s the middle three fifths.
+  std::istringstream rows(terminal_plot({"run"}, panels));
+  for (std::string row; std::getline(rows, row);) {
+    const std::size_t axis = row.find(" |");
+    if (axis == std::string::npos) continue;
+    EXPECT_THAT(row.substr(axis + 2), testing::ContainsRegex(" {38,}")) << row;
+  }
 }
 
 TEST(Report, HoldsEveryRunWholeWhateverItsTexts) {

@@ -2,6 +2,10 @@
 // said.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "scene_fixture.hpp"
 
 namespace withy::test {
@@ -22,6 +26,40 @@ TEST_F(BadDocuments, ProblemsAreReportedAllAtOnceInTheOrderOfTheFile) {
             "s.yaml:15:40: /bodies/boom/bending_y/modes: got \"many\"; need whole number >= 0 and <= 1000\n"
             "s.yaml:19:30: /hinges/root/parent: no body \"hubb\"; did you mean 'hub'?\n"
             "s.yaml:21:82: /loads/motor/period: got \"5 kg\": 'kg' is a wrong unit here; need finite > 0 [s]");
+}
+
+/// Faults of names far apart, each said alone in the words in which all are said together.
+TEST_F(BadDocuments, NamesAreLookedUpWhereNoModelCanBeMade) {
+  const std::string base = std::string(good_scene) + R"(integrator: {name: dopri5, rtol: 1e-6}
+outputs: {end: {type: frame, of: boom.tip}}
+events:
+  there: {hinge: shoulder, value: "30 deg", stop: true}
+  first: {at: 0.2, do: {lock: shoulder}}
+  then: {after: first, do: {unlock: shoulder}}
+  last: {at: 0.5, do: {switch_off: motor}}
+initial: {hinges: {shoulder: {rate: [0.1]}}}
+)";
+  ASSERT_EQ(problems(base, registry), "");
+  std::string text = base;
+  std::vector<std::string> alone;
+  for (const auto& [good, bad] :
+       std::vector<std::pair<std::string, std::string>>{{"parent: hub.out,", "parent: hub.outt,"},
+                                                        {"rtol: 1e-6", "rtol: -1"},
+                                                        {"of: boom.tip", "of: boom.tpp"},
+                                                        {"{hinge: shoulder, value", "{hinge: sholder, value"},
+                                                        {"lock: shoulder}", "lock: sholder}"},
+                                                        {"after: first", "after: frst"},
+                                                        {"switch_off: motor", "switch_off: motr"},
+                                                        {"hinges: {shoulder: {rate", "hinges: {shouldr: {rate"}}) {
+    alone.push_back(problems(replaced(base, good, bad), registry));
+    text = replaced(text, good, bad);
+  }
+  const std::string all = problems(text, registry);
+  for (const std::string& problem : alone) {
+    EXPECT_EQ(std::count(problem.begin(), problem.end(), '\n'), 0) << problem;
+    EXPECT_THAT(all, testing::HasSubstr(problem));
+  }
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 7) << all;
 }
 
 TEST_F(BadDocuments, WhatRestsOnAPartThatIsReportedIsNotReportedToo) {

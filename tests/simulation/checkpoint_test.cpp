@@ -53,6 +53,7 @@ void expect_equal(const RunSummary& a, const RunSummary& b) {
   EXPECT_EQ(a.final.y, b.final.y);
   EXPECT_EQ(a.peak_deflection, b.peak_deflection);
   EXPECT_EQ(a.peak_deflection_ratio, b.peak_deflection_ratio);
+  EXPECT_EQ(a.peak_section_angle, b.peak_section_angle);
   EXPECT_EQ(a.peak_effort, b.peak_effort);
   EXPECT_EQ(a.peak_motion_effort, b.peak_motion_effort);
   EXPECT_EQ(a.energy_drift, b.energy_drift);

@@ -72,6 +72,7 @@ TEST(RunSummaries, peaks_drift_and_samples_do_not_depend_on_the_output_interval)
     for (const RunSummary& other : {b, c}) {
       EXPECT_EQ(a.peak_deflection, other.peak_deflection) << formulation;
       EXPECT_EQ(a.peak_deflection_ratio, other.peak_deflection_ratio);
+      EXPECT_EQ(a.peak_section_angle, other.peak_section_angle);
       EXPECT_EQ(a.peak_effort, other.peak_effort);
       EXPECT_EQ(a.peak_motion_effort, other.peak_motion_effort);
       EXPECT_EQ(a.energy_drift, other.energy_drift);

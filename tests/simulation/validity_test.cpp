@@ -227,6 +227,23 @@ TEST(Validity, a_run_repeated_gives_the_same_bits) {
   EXPECT_EQ(unwatched.final.y, one.final.y) << "watching changes nothing";
 }
 
+// What rests in axes that turn at 2 rad/s turns with them; what turns back as fast in them does not turn.
+TEST(Validity, the_rate_of_a_body_is_that_in_axes_that_do_not_turn) {
+  const auto watched = [](const std::string& hinge, const std::string& initial) {
+    Made m(
+        "format: withy/1\ntime: {end: 1}\ngravity: [0, 0, 0]\nformulation: ruthless\nbodies:\n  arm: {type: beam, "
+        "length: 1, mass_per_length: 1, bending_y: {stiffness: 10, modes: 1}}\nhinges:\n  h: {type: " +
+        hinge + ", parent: world, child: arm}\nloads: {axes: {type: rotating-frame, axis: [0, 0, 1], rate: 2}}\n" +
+        initial);
+    Validity validity;
+    ValidityWatch watch(*m.scene.model, *m.equations, nullptr, validity);
+    watch.finish(m.scene.initial, true);
+    return validity.bodies.at(0).rate_ratio;
+  };
+  EXPECT_NEAR(watched("weld", ""), 2 / (3.51602 * std::sqrt(10.0)), 1e-5);
+  EXPECT_NEAR(watched("revolute, axis: [0, 0, 1]", "initial: {hinges: {h: {rate: [-2]}}}\n"), 0, 1e-12);
+}
+
 // A cantilever without damping, at y = a cos w1 t and z = a sin w2 t: neither component is ever more than a, of which
 // each is seen in the first quarter of a turn; both together come to a sqrt(2) as they beat.
 TEST(Peaks, of_a_beam_that_bends_in_two_planes_are_those_of_the_whole) {

@@ -12,6 +12,7 @@
 #include "withy/study/accuracy.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/run.hpp"
+#include "withy/study/trade.hpp"
 #include "withy/tests/study/plugins.hpp"
 #include "withy/tests/study/scenes.hpp"
 
@@ -118,6 +119,18 @@ TEST(StudyAdvice, WhatThereWasNoTimeForIsAdvisedWhereItIsGivenMore) {
   EXPECT_THAT(cut.trouble, HasSubstr("give the search more time (--seconds "));
   EXPECT_THROW(within(0), OptionError);
   EXPECT_THROW(within(std::numeric_limits<double>::infinity()), OptionError);
+}
+
+/// Where nothing moves no error shows: any model would hold any accuracy, at no cost.
+TEST(StudyAdvice, IsRefusedOfARunThatEndsWhereItBegins) {
+  SceneValues values = short_slew();
+  const Prepared slew = prepare(values.set("time.end", Value(0.0), "the test"), plugins());
+  const Outputs outputs(slew.model());
+  Evaluator evaluator(slew, plugins(), outputs, {});
+  const Candidates candidates = candidates_for(slew, plugins(), usual_axes());
+  EXPECT_THROW(advise(evaluator, candidates, Accuracy::parse("1%")), InputError);
+  TradeStudy trade(slew, plugins(), {{"linear", "", 1, "dopri5", 1e-4, {}}}, {});
+  EXPECT_THROW(trade.run(), InputError);
 }
 
 /// Three modes hold 0.1 % on the screw with less left over than the reference may be off by when it is first good

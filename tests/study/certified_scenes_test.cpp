@@ -111,20 +111,24 @@ void expect_drifts(const Certified& c, const Certified& tight) {
   }
 }
 
-/// Of the place that a body is measured at, over its length. Where that is no tip its expansion is evaluated.
+/// Of the place that a body is measured at, over its length, or the greatest of several. Where that is no tip its
+/// expansion is evaluated.
 double deflection_over_length(const Certified& c, const State& state, std::size_t b) {
   const BodyNode& node = c.model().bodies()[b];
-  const MeasuredPlace place = measured_place(*node.body).value();
-  const double length = node.body->shape().length;
-  if (place.name == "tip") {
-    const auto d = c.equations().deflection(state.y, static_cast<int>(b), node.frame("tip"));
-    return std::hypot(d[0], d[1], d[2]) / length;
+  double most = 0;
+  for (const MeasuredPlace& place : measured_places(*node.body)) {
+    if (place.name == "tip") {
+      const auto d = c.equations().deflection(state.y, static_cast<int>(b), node.frame("tip"));
+      most = std::max(most, std::hypot(d[0], d[1], d[2]));
+      continue;
+    }
+    const PointExpansion& at = place.at;
+    const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + c.model().layout().modes(b)->position, at.phi.cols());
+    Vector3 d = at.phi * q;
+    for (std::size_t k = 0; k < 3; ++k) d[static_cast<Eigen::Index>(k)] += 0.5 * q.dot(at.gamma[k] * q);
+    most = std::max(most, d.norm());
   }
-  const PointExpansion& at = place.at;
-  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + c.model().layout().modes(b)->position, at.phi.cols());
-  Vector3 d = at.phi * q;
-  for (std::size_t k = 0; k < 3; ++k) d[static_cast<Eigen::Index>(k)] += 0.5 * q.dot(at.gamma[k] * q);
-  return d.norm() / length;
+  return most / node.body->shape().length;
 }
 
 void expect_deflections(const Certified& c) {

@@ -62,6 +62,73 @@ TEST(Limits, OfDeflectionsAreLookedAtWhereABeamBends) {
   EXPECT_THAT(breaks.summary.message, HasSubstr("the section at 50 % of the length of 'beam' is deflected by"));
 }
 
+// T L/GJ = 0.5 rad of twist while it sags by little is beyond the 0.2 rad up to which angles are small; on a shaft that
+// does not bend no angle is too great.
+TEST(Limits, OfAnglesAreThoseOfSectionsOfBodiesThatBend) {
+  const auto shaft = [](double force) {
+    return Limited(
+        "gravity: [0, 0, 0]\nformulation: quadratic\nintegrator: {name: radau, rtol: 1e-6}\n"
+        "time: {end: 1, output: 0.1}\nbodies:\n  b: {type: beam, length: 1, mass_per_length: 1, "
+        "bending_z: {stiffness: 20, modes: 2, family: orthogonal-polynomials}, torsion: {stiffness: 1, "
+        "inertia: 0.01, modes: 2, family: orthogonal-polynomials}, damping_ratio: 0.3}\n"
+        "hinges: {r: {type: weld, parent: world, child: b}}\nloads:\n  t: {type: torque, frame: b.tip, "
+        "value: [0.5, 0, 0], following: true}\n  f: {type: force, frame: b.tip, value: [0, 0, " +
+        std::to_string(force) + "]}\n");
+  };
+  const std::string words = "angle that the tip of 'b' turns by while it is bent";
+  const Limited bent = shaft(1);
+  EXPECT_LT(bent.of("tip deflection of 'b'").use(), 1);
+  EXPECT_GT(bent.of(words).value, 0.5);
+  EXPECT_LT(bent.of(words).value, 1.1) << "twice at most, and a slope of F L²/2EI";
+  EXPECT_EQ(bent.of(words).limit, 0.2);
+  EXPECT_GT(bent.of(words).use(), 1);
+  EXPECT_TRUE(std::isnan(shaft(0).of(words).value));
+}
+
+// Opposite forces P at the corners of a free edge twist a plate by P L/(2 D (1 − ν)) where its root does not hold it
+// from warping: its corners go 0.3 of its length here, somewhat less for the root; the middle of the edge rests.
+TEST(Limits, OfDeflectionsOfAPlateAreThoseOfItsCornersToo) {
+  const Limited twisted(R"(gravity: [0, 0, 0]
+formulation: quadratic
+integrator: {name: radau, rtol: 1e-6}
+time: {end: 6, output: 0.1}
+bodies:
+  p: {type: plate, length: 1, width: 0.6, mass_per_area: 2.7, stiffness: 5, modes: 5, damping_ratio: 0.3}
+hinges: {r: {type: weld, parent: world, child: p}}
+loads:
+  l: {type: force, frame: p.left, value: [0, 0, 7]}
+  r: {type: force, frame: p.right, value: [0, 0, -7]}
+)");
+  const Indicator i = twisted.of("deflection of what moves most of the tip, left, right of 'p' over its length");
+  EXPECT_GT(i.value, 0.2);
+  EXPECT_LT(i.value, 2 * 0.3);
+  EXPECT_GT(i.use(), 1);
+  EXPECT_LT(twisted.summary.peak_deflection.at("p")[2], 1e-6) << "of the tip alone";
+}
+
+// In `ruthless` what lies between segments is truncated as what lies within them: the load of the whole counts, as of
+// the beam in one piece of the same functions. Without truncation each segment's own does.
+TEST(Limits, OfLoadsOfBodiesInSegmentsAreThoseOfTheWholeWhereKinematicsIsTruncated) {
+  const auto spun = [](int segments, const std::string& formulation) {
+    return Limited("formulation: " + formulation + R"(
+gravity: [0, 0, 0]
+integrator: {name: dopri5, rtol: 1e-7}
+time: {end: 0.2}
+bodies:
+  b: {type: beam, length: 2, mass_per_length: 1, segments: )" +
+                   std::to_string(segments) +
+                   R"(, bending_y: {stiffness: 20, modes: 2, family: orthogonal-polynomials}}
+hinges: {r: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+motions: {m: {type: constant-rate, hinge: r, rate: 3}}
+)");
+  };
+  const double whole = spun(1, "ruthless").of("load of 'b' over").value;
+  EXPECT_GT(whole, 0.1);
+  EXPECT_NEAR(spun(6, "ruthless").of("load of 'b' over").value, whole, 1e-3 * whole);
+  EXPECT_TRUE(std::isnan(spun(6, "ruthless").of("load of 'b.1' over").value));
+  EXPECT_LT(spun(6, "linear").of("load of 'b.1' over").value, 0.1 * whole);
+}
+
 // With one mode of 58 rad/s a step of 0.1 s has hardly a period of it; energy and stability do not tell.
 TEST(Limits, OfFixedStepsAreThoseOfTheLowestVibrations) {
   const std::string boom = R"(time: {end: 2, output: 0.1}

@@ -114,6 +114,27 @@ TEST(SampledModes, OfADelayedControllerHaveWhatIsOnItsWay) {
   expect_eigenvalues(multipliers(at), map, 1e-12);
 }
 
+/// A controller with a delay that begins between two samples waits for the next; small motions are about one that acts,
+/// whatever the time of the state: 8.3333 on, its own instants go on as those of a multiple.
+TEST(SampledModes, OfADelayedControllerAreTheSameBetweenSamples) {
+  // θ, ω and what was commanded two samples ago and one.
+  Eigen::Matrix4d map = Eigen::Matrix4d::Zero();
+  map.topLeftCorner<2, 3>() = over(table_sample);
+  map(2, 3) = 1;
+  map(3, 0) = -table_gain;
+  for (const std::string time : {"0", "0.005", "0.02", "8.3333"}) {
+    SCOPED_TRACE(time);
+    const std::vector<std::string> changes = {"loads.servo.delay=0.04", "loads.servo.reference=0.4",
+                                              "initial={time: " + time + "}", "time={end: 10}"};
+    const Configuration c = at_start(scene_of(digital_table, changes));
+    const ModesAt at = modes_at(c, false);
+    ASSERT_EQ(at.problem, "");
+    expect_eigenvalues(multipliers(at), map, 1e-12);
+    EXPECT_NEAR(at.steady->steady.state.y[0], 0.4, 1e-12) << "at rest it stands where its reference is";
+    EXPECT_FALSE(linear_model(c, {{"axle"}, {}}).equilibrium);
+  }
+}
+
 /// Two controllers, one of them at every second sample of the other.
 TEST(SampledModes, OfSeveralPeriodsAreThoseOfTheCommonOne) {
   const ModesAt at = modes_of(digital_table, {"loads.slow={type: pid, hinge: axle, proportional: 2, sample: 0.04}"});

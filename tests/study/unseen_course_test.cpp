@@ -46,6 +46,12 @@ TEST(UnseenCourse, IsNamedWhereStepsAreFixed) {
   }
 }
 
+/// Samples of it tell the period to an eighth, a clock to the last bit.
+TEST(UnseenCourse, SaysThatItsPeriodIsRough) {
+  const CertifiedRun shaken = run_of_shaken("{name: rk4, step: 0.02}", sine_load(0.01), sine_motion(0.5));
+  EXPECT_THAT(shaken.summary.message, testing::HasSubstr(" s or so, whatever moves, "));
+}
+
 TEST(UnseenCourse, IsNoneWhereStepsFollow) {
   const std::string slow = sine_motion(0.5);
   const auto message = [](const std::string& integrator, const std::string& load, const std::string& motion) {

@@ -285,18 +285,20 @@ class Scene:
 
         return Equations(self._with({} if formulation is None else {"formulation": formulation})._made, "")
 
-    def compare(self, formulations: Sequence[str] = ("ruthless", "inconsistent", "consistent", "quadratic"),
-                reference: str = "quadratic", *, outputs: Sequence[str] = (),
+    def compare(self, formulations: Sequence[str] | None = None, reference: str = "quadratic", *,
+                outputs: Sequence[str] = (),
                 progress: Progress | None = None) -> dict[str, Any]:
         """Runs several formulations: what ``withy compare --json`` prints, each run with its distance to the reference.
 
         Args:
+            formulations: of ruthless, inconsistent, consistent and quadratic those that can treat the scene where left
+                out; "left_out" has the others, each with the reason.
             outputs: what errors are measured on, as in `advise`; the usual ones where left out.
 
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return _read_json(self._made.compare(as_list(formulations), reference, as_list(outputs), progress))
+        return _read_json(self._made.compare(as_list(formulations or ()), reference, as_list(outputs), progress))
 
     def trade(self, *, outputs: Sequence[str] = (), formulations: Sequence[str] = (), families: Sequence[str] = (),
               modes: Sequence[int] = (), integrators: Sequence[str] = (), tolerances: Sequence[float] = (),

@@ -12,6 +12,13 @@ export function draw(name, attributes = {}, text) {
 export const number = v => v == null || Number.isNaN(v) ? '–' : v === 0 ? '0'
   : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2).replace('e+', 'e') : `${+v.toPrecision(4)}`;
 
+// Numbers of one range, with the digits that tell a thousandth of it apart; with four where the range is as large as they.
+export function number_within(least, greatest) {
+  const range = greatest - least, largest = Math.max(Math.abs(least), Math.abs(greatest));
+  const digits = range > 0 ? Math.min(15, Math.ceil(Math.log10(largest / range)) + 3) : 4;
+  return digits <= 4 ? number : v => Number.isFinite(v) ? `${+v.toPrecision(digits)}` : number(v);
+}
+
 // A scale from data to pixels with its ticks.
 export function scale_of(values, { log = false, from, to, include = [], room = 0.05 }) {
   const shown = values.filter(v => Number.isFinite(v) && (!log || v > 0));

@@ -1,6 +1,6 @@
 // Many cases: how results are distributed, what they depend on, and which cases failed.
 import { element } from '../words.js';
-import { Figure, answers, draw, number, scale_of, table_of, tell } from './figure.js';
+import { Figure, answers, draw, number, number_within, scale_of, table_of, tell } from './figure.js';
 
 const short = name => name.replace(/^peak\.|^final\./, '');
 
@@ -25,7 +25,10 @@ export class Sweep {
     said.append(element('p', `${cases} cases: ${done} done, ${failed} of them failed${cases > done ? `, ${cases - done} missing` : ''}.`));
     if (failed > 0) said.append(element('p', `${number(100 * failed_share.value)} % failed; with 95 % confidence ${number(100 * failed_share.low)} to ${number(100 * failed_share.high)} %, were they drawn at random.`, { class: 'message' }));
     if (this.data.counted_every > 1) said.append(element('p', `Distributions and envelopes are of every ${this.data.counted_every}th case; table.csv has all.`));
-    for (const c of this.results.slice(0, 6)) said.append(element('p', `${c.name}: half of the cases are below ${number(c.median)}, 5 % below ${number(c.p05)}, 5 % above ${number(c.p95)}; least ${number(c.least)}, greatest ${number(c.greatest)}.`, { class: 'soft' }));
+    for (const c of this.results.slice(0, 6)) {
+      const told = number_within(c.least, c.greatest);
+      said.append(element('p', `${c.name}: half of the cases are below ${told(c.median)}, 5 % below ${told(c.p05)}, 5 % above ${told(c.p95)}; least ${told(c.least)}, greatest ${told(c.greatest)}.`, { class: 'soft' }));
+    }
     this.holder.append(said);
   }
 

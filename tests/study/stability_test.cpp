@@ -1,0 +1,242 @@
+// Whether steady states last: what small motions about them do, whether they go on where hinges slide, and whether
+// those of a sweep continue each other.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "withy/study/bent.hpp"
+#include "withy/study/equilibrium.hpp"
+#include "withy/study/linear_model.hpp"
+#include "withy/study/modes.hpp"
+#include "withy/study/variation_text.hpp"
+#include "withy/tests/study/linear_scenes.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+using testing::HasSubstr;
+using testing::Not;
+
+Equilibrium balance_of(const std::string& scene, const Holding& holding = {},
+                       const std::vector<std::string>& changes = {}) {
+  const Prepared prepared = scene_of(scene, changes);
+  return find_equilibrium({prepared, prepared.scene.initial, holding}, holding, plugins());
+}
+
+/// m g l = 9.81 N m about a pivot with J = 0.1 + 2 · 0.25 = 0.6 kg m².
+const std::string rigid_pendulum = R"(
+gravity: [0, -9.81, 0]
+bodies: {bob: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}}
+)";
+
+TEST(Stability, OfAPendulumIsToldWhereItHangsAndWhereItStands) {
+  const Equilibrium standing = balance_of(rigid_pendulum, {}, {"initial={hinges: {pivot: {position: [1.5]}}}"});
+  ASSERT_EQ(standing.problem, "");
+  ASSERT_TRUE(standing.stability.has_value());
+  EXPECT_EQ(standing.stability->growing, 1U);
+  EXPECT_FALSE(standing.stability->stable());
+  EXPECT_NEAR(standing.stability->growth, std::sqrt(9.81 / 0.6), 1e-9);
+  EXPECT_EQ(standing.stability->most, "pivot.0");
+  EXPECT_FALSE(standing.stability->vibrates);
+  EXPECT_THAT(stability_text(standing.stability),
+              HasSubstr("a small motion about it grows by 4.04/s, most in pivot.0"));
+
+  const Equilibrium hanging = balance_of(rigid_pendulum, {}, {"initial={hinges: {pivot: {position: [-1.5]}}}"});
+  ASSERT_TRUE(hanging.stability.has_value());
+  EXPECT_TRUE(hanging.stability->stable());
+  EXPECT_THAT(stability_text(hanging.stability), HasSubstr("stable"));
+  // Nothing is free to move.
+  EXPECT_FALSE(balance_of(rigid_pendulum, {{"pivot"}, {}}).stability.has_value());
+}
+
+/// θ and ω over T = 0.02 s with the torque −k θ held: the product of the multipliers is 1 + k T²/2J.
+TEST(Stability, OfASampledLoopIsThatOfItsMap) {
+  const Equilibrium found = balance_of(R"(
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+loads: {servo: {type: pid, hinge: axle, proportional: 5, sample: 0.02}}
+)");
+  ASSERT_TRUE(found.stability.has_value());
+  EXPECT_EQ(found.stability->growing, 1U);
+  EXPECT_TRUE(found.stability->vibrates);
+  EXPECT_NEAR(found.stability->growth, std::log(1 + 5 * 0.02 * 0.02 / (2 * 0.2)) / (2 * 0.02), 1e-8);
+}
+
+TEST(Stability, DoesNotTakeWhatNothingHoldsForWhatGrows) {
+  const Equilibrium found = balance_of(R"(
+bodies: {car: {type: rigid, mass: 4, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {rail: {type: prismatic, axis: [1, 0, 0], parent: world, child: car}}
+)");
+  ASSERT_TRUE(found.stability.has_value());
+  EXPECT_EQ(found.stability->growing, 0U);
+  EXPECT_EQ(found.stability->unheld, 1U);
+  EXPECT_THAT(stability_text(found.stability), HasSubstr("nothing holds"));
+}
+
+/// A car that slides past the anchor of a spring: beside the anchor the pull is at its greatest, and its derivative
+/// along the way is zero.
+const std::string sliding = R"(
+bodies:
+  c: {type: rigid, mass: 1}
+  m: {type: rigid, mass: 1}
+hinges:
+  x: {type: prismatic, axis: [1, 0, 0], parent: world, child: c}
+  y: {type: prismatic, axis: [0, 1, 0], parent: c, child: m}
+loads:
+  k: {type: hinge-spring, hinge: y, stiffness: 50}
+)";
+const std::string anchored =
+    "loads.s={type: spring-damper, frame: m, anchor: [0, -1, 0], stiffness: 100, free_length: 0.5}";
+
+TEST(Balance, WhereAHingeSlidesPastWhatPullsIsThatOfAPlace) {
+  const Holding moving{{}, {{"x", 0.5}}};
+  for (const std::string at : {"0", "0.3"}) {
+    const Equilibrium found =
+        balance_of(sliding, moving, {anchored, "initial={hinges: {x: {position: [" + at + "]}}}"});
+    EXPECT_EQ(found.problem, "");
+    EXPECT_FALSE(found.stays) << at;
+    EXPECT_THAT(found.changing, HasSubstr("steady at this place alone")) << at;
+    EXPECT_FALSE(found.stability.has_value());
+  }
+  EXPECT_TRUE(balance_of(sliding, moving).stays) << "a spring that goes along";
+  EXPECT_TRUE(balance_of(sliding, {{"x"}, {}}, {anchored}).stays) << "it stands";
+}
+
+/// A rotor of n rigid blades on a soft bed: forces of the blades make up for each other, all free coordinates are zero.
+std::string balanced_rotor(int blades) {
+  std::string frames, bodies, hinges, loads;
+  for (int i = 0; i < blades; ++i) {
+    const std::string n = std::to_string(i);
+    const double angle = 2 * std::acos(-1.0) * i / blades;
+    frames +=
+        fmt::format("{}p{}: {{position: [{:.17g}, {:.17g}, 0], orientation: {{axis: [0, 0, 1], angle: {:.17g} deg}}}}",
+                    i > 0 ? ", " : "", n, 0.3 * std::cos(angle), 0.3 * std::sin(angle), 360.0 * i / blades);
+    bodies += "  b" + n + ": {type: rigid, mass: 1, center_of_mass: [2, 0, 0], inertia: [0.01, 1, 1, 0, 0, 0]}\n";
+    hinges += "  l" + n + ": {type: revolute, axis: [0, 0, 1], parent: hub.p" + n + ", child: b" + n + "}\n";
+    loads += "  k" + n + ": {type: hinge-spring, hinge: l" + n + ", stiffness: 20, damping: 0.4}\n";
+  }
+  return R"(
+bodies:
+  bx: {type: rigid, mass: 5}
+  by: {type: rigid, mass: 15}
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {)" +
+         frames + "}}\n" + bodies + R"(hinges:
+  x: {type: prismatic, axis: [1, 0, 0], parent: world, child: bx}
+  y: {type: prismatic, axis: [0, 1, 0], parent: bx, child: by}
+  rot: {type: revolute, axis: [0, 0, 1], parent: by, child: hub}
+)" + hinges +
+         R"(loads:
+  kx: {type: hinge-spring, hinge: x, stiffness: 2000, damping: 4}
+  ky: {type: hinge-spring, hinge: y, stiffness: 3000, damping: 4}
+)" + loads;
+}
+
+/// What rounding leaves of 690 N that cancel moves the bed by more than a share of nothing.
+TEST(Balance, OfForcesThatMakeUpForEachOtherAboutZeroIsFound) {
+  for (const int blades : {3, 4, 6, 8}) {
+    for (const double rate : {3.0, 10.0, 31.7}) {
+      const Holding spun{{}, {{"rot", rate}}};
+      const Prepared prepared = scene_of(balanced_rotor(blades));
+      const Configuration c(prepared, prepared.scene.initial, spun);
+      const SteadyState found = find_steady_state(c.dynamics(), c.state(), c.held());
+      EXPECT_TRUE(found.converged) << blades << " blades at " << rate;
+      EXPECT_LT(found.iterations, 10) << blades << " blades at " << rate;
+      EXPECT_LT(std::abs(found.state.y[0]) + std::abs(found.state.y[1]), 1e-14) << "[m]";
+    }
+  }
+}
+
+/// A bob between a wall and a spring that is too long: pushed through the middle it snaps where d³ = L₀, d² = 1 + y²,
+/// at a push of k (L₀/d − 1) y = 0.4975 N.
+const std::string arch = R"(
+bodies: {m: {type: rigid, mass: 1}}
+hinges: {y: {type: prismatic, axis: [0, 1, 0], parent: world, child: m}}
+loads:
+  s: {type: spring-damper, frame: m, anchor: [1, 0, 0], stiffness: 100, free_length: 1.04403}
+  p: {type: force, frame: m, value: [0, 0, 0]}
+initial: {hinges: {y: {position: [0.3]}}}
+)";
+
+TEST(Sweep, SaysWhereItsStatesDoNotContinueEachOther) {
+  const double d = std::cbrt(1.04403), snap = 100 * (1.04403 / d - 1) * std::sqrt(d * d - 1);
+  EXPECT_NEAR(snap, 0.4975, 1e-4);
+  const Sweep sweep = parse_sweep("loads.p.value.1=0:-0.8:9", "sweep");
+  const ModesOf run = sweep_modes(scene_of(arch).values, plugins(), {}, {}, sweep, false, {}, {});
+  ASSERT_EQ(run.points.size(), 9U);
+  for (std::size_t k = 0; k < run.points.size(); ++k) {
+    EXPECT_EQ(run.points[k].problem, "");
+    const bool passes = k > 0 && -sweep.values[k - 1] < snap && -sweep.values[k] > snap;
+    EXPECT_EQ(run.points[k].jump == Jump::no_way_back, passes) << sweep.values[k];
+    if (!passes) {
+      EXPECT_EQ(run.points[k].jump, Jump::none) << sweep.values[k];
+    }
+  }
+}
+
+/// Where nothing is bent there and back, nor along a line that nothing holds, no sweep jumps.
+TEST(Sweep, OfStatesThatContinueEachOtherSaysNothing) {
+  const std::string drifting = R"(
+gravity: [0, -9.81, 0]
+bodies:
+  car: {type: rigid, mass: 4, inertia: [1, 1, 1, 0, 0, 0]}
+  bob: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}
+hinges:
+  rail: {type: prismatic, axis: [1, 0, 0], parent: world, child: car}
+  pivot: {type: revolute, axis: [0, 0, 1], parent: car, child: bob}
+loads: {turn: {type: hinge-spring, hinge: pivot, stiffness: 20}}
+)";
+  const Sweep sweep = parse_sweep("loads.turn.stiffness=20:2:7", "sweep");
+  for (const ModesAt& at : sweep_modes(scene_of(drifting).values, plugins(), {}, {}, sweep, false, {}, {}).points)
+    EXPECT_EQ(at.jump, Jump::none) << at.value;
+}
+
+/// A uniform blade hinged at the axis: the force −Ω² qᵀM₂q is what holds it, and without it, in `symmetric`, it
+/// diverges from Ω² = (1/3)/(11/420) on, where the work that a load ρA x does on the deflection it makes outweighs the
+/// inertia.
+TEST(Symmetric, LosesABladeOnAFlappingHingeWhereTheoryHasIt) {
+  const std::string blade = R"(
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  b: {type: beam, length: 1, mass_per_length: 1, bending_z: {stiffness: 1, modes: 8, family: orthogonal-polynomials}}
+hinges:
+  a: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  f: {type: revolute, axis: [0, 1, 0], parent: hub, child: b}
+)";
+  const double limit = std::sqrt(140.0 / 11);
+  const auto grows = [&](const std::string& formulation, double rate) {
+    const Prepared prepared = scene_of(blade, {"formulation=" + formulation});
+    const ModesAt at = modes_at({prepared, prepared.scene.initial, {{}, {{"a", rate}}}}, false);
+    EXPECT_EQ(at.problem, "");
+    return !at.modes.empty() && unstable(at, at.modes.front());
+  };
+  EXPECT_FALSE(grows("symmetric", limit * (1 - 1e-4)));
+  EXPECT_TRUE(grows("symmetric", limit * (1 + 1e-4)));
+  for (const char* formulation : {"ruthless", "consistent", "quadratic"}) EXPECT_FALSE(grows(formulation, 3 * limit));
+}
+
+/// A blade on an axle that leans is bent by its spin alone.
+TEST(Bent, NamesWhatThereIsThatBends) {
+  const std::string cone = R"(
+formulation: exact
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {rim: {position: [0.5, 0, 0]}}}
+  blade: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 2, modes: 3}, bending_z: {stiffness: 1, modes: 3}}
+hinges:
+  axle: {type: revolute, axis: [0.4, 0.3, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub.rim, child: blade}
+)";
+  const std::string spun = balance_of(cone, {{}, {{"axle", 2}}}).bent;
+  EXPECT_THAT(spun, HasSubstr(", by the motion of hinges (axle) as they are at t = 0 s"));
+  EXPECT_THAT(spun, Not(HasSubstr("weight")));
+  const std::string hung = balance_of(cone, {{"axle"}, {}}, {"gravity=[0, 0, -2]"}).bent;
+  EXPECT_THAT(hung, HasSubstr(", by weight as"));
+}
+
+}  // namespace
+}  // namespace withy::study
