@@ -59,9 +59,13 @@ KnownRoots eigenvalues_with_zeros(const Eigen::MatrixXd& A, double rounding, dou
   constexpr double share = 1e-13;
   if (!A.allFinite()) throw std::domain_error("the linear system is not finite");
   KnownRoots roots{Eigen::VectorXcd::Zero(A.rows()), Eigen::VectorXd::Zero(A.rows())};
-  const Eigen::MatrixXd of_elements = rounding_of(A).array() + rounding;
-  const Unchained unchained(A, unheld_but_for(A, of_elements), of_elements);
-  const Eigen::MatrixXd& left = unchained.matrix();
+  Eigen::MatrixXd left = A, of_elements = rounding_of(A).array() + rounding;
+  for (Eigen::MatrixXd gone = unheld_but_for(left, of_elements); gone.cols() > 0;
+       gone = unheld_but_for(left, of_elements)) {
+    const Quotient link(left, gone);
+    of_elements = link.rounding(of_elements);
+    left = link.matrix();
+  }
   if (left.rows() == 0) return roots;
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(left);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");

@@ -124,9 +124,12 @@ Eigen::MatrixXd unheld_but_for(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
   return GradedMatrix(known, Eigen::VectorXd()).unheld();
 }
 
-Unchained::Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first, Eigen::MatrixXd rounding)
-    : matrix_(A), directions_(A.rows(), 0), led_to_(A.rows(), 0) {
-  for (Eigen::MatrixXd next = first; next.cols() > 0; next = unheld_but_for(matrix_, rounding)) {
+Unchained::Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first)
+    : matrix_(A),
+      directions_(A.rows(), 0),
+      led_to_(A.rows(), 0),
+      share_(A.rows() > 0 ? 1e-13 * static_cast<double>(A.rows()) * A.colwise().norm().maxCoeff() : 0.0) {
+  for (Eigen::MatrixXd next = first; next.cols() > 0; next = unheld()) {
     if (links_.size() == 1) led_to_ = links_[0].along(next);
     Eigen::MatrixXd lifted = next;
     for (auto link = links_.rbegin(); link != links_.rend(); ++link) lifted = link->lifted(lifted);
@@ -134,8 +137,19 @@ Unchained::Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first, Eig
     directions_.rightCols(next.cols()) = lifted;
     links_.emplace_back(matrix_, next);
     matrix_ = links_.back().matrix();
-    rounding = links_.back().rounding(rounding);
   }
+}
+
+/// What is left takes these to nothing, but for rounding of what A was.
+Eigen::MatrixXd Unchained::unheld() const {
+  const Eigen::Index n = matrix_.rows();
+  const double largest = n > 0 ? matrix_.colwise().norm().maxCoeff() : 0.0;
+  if (!(largest > 0)) return Eigen::MatrixXd::Identity(n, n);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> rows(n, n);
+  rows.setThreshold(share_ / largest);
+  rows.compute(matrix_);
+  const Eigen::MatrixXd Z = rows.matrixZ();
+  return rows.colsPermutation() * Z.bottomRows(n - rows.rank()).transpose();
 }
 
 Eigen::MatrixXcd Unchained::vectors(const Eigen::VectorXcd& values, Eigen::MatrixXcd of_matrix) const {

@@ -79,8 +79,7 @@ Eigen::MatrixXd unheld_but_for(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 class Unchained {
  public:
   /// \param first independent columns that A takes to nothing; where there are none it has no zeros
-  Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first) : Unchained(A, first, rounding_of(A)) {}
-  Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first, Eigen::MatrixXd rounding);
+  Unchained(const Eigen::MatrixXd& A, const Eigen::MatrixXd& first);
 
   /// Vectors of A, one a zero, those of `first` first.
   [[nodiscard]] const Eigen::MatrixXd& directions() const { return directions_; }
@@ -93,7 +92,10 @@ class Unchained {
   [[nodiscard]] Eigen::MatrixXcd left_vectors(Eigen::MatrixXcd of_matrix) const;
 
  private:
+  [[nodiscard]] Eigen::MatrixXd unheld() const;
+
   Eigen::MatrixXd matrix_, directions_, led_to_;
+  double share_;  ///< rounding of what A was
   std::vector<Quotient> links_;
 };
 
