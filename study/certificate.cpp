@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "withy/core/plugin/formulation.hpp"
-#include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/validity_limits.hpp"
 #include "withy/study/candidates.hpp"
 #include "withy/study/common_velocity.hpp"
@@ -37,19 +36,7 @@ void add_plan(Certificate& c, const Prepared& prepared, RungPlan plan, double re
   c.plan = std::move(plan);
 }
 
-/// Among the indicators, in its place.
-void add(Certificate& c, const Indicator& indicator) {
-  const auto after = std::find_if(c.indicators.begin(), c.indicators.end(),
-                                  [&](const Indicator& i) { return i.use() < indicator.use(); });
-  c.indicators.insert(after, indicator);
-}
-
-void add_rounding(Certificate& c) {
-  constexpr double limit = 1e-6;
-  if (!c.rounding) return;
-  add(c,
-      {"error that rounding leaves the accelerations", *c.rounding, limit, "accelerations have fewer than six digits"});
-}
+void add(Certificate& c, const Indicator& indicator) { add_in_place(c.indicators, indicator); }
 
 void add_common_velocity(Certificate& c, std::optional<double> part) {
   constexpr double limit = 0.01;
@@ -158,8 +145,6 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.dropped = std::move(evidence.dropped);
   c.families = families_of(scene);
   const EquationsOfMotion& equations = last != nullptr ? *last->equations : *prepared.equations;
-  const double rounding = rounding_error(prepared.model(), equations, summary.final).relative;
-  if (std::isfinite(rounding)) c.rounding = rounding;
   c.samples = summary.validity.samples;
   c.bodies = summary.validity.bodies;
   for (BodyValidity& b : c.bodies)
@@ -171,7 +156,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.more_modes = std::move(evidence.more_modes);
   c.steps = step_limit(prepared, summary, registry);
   c.indicators = indicators(scene, summary, last != nullptr ? std::optional(last->terms) : std::nullopt);
-  add_rounding(c);
+  c.rounding = add_rounding(c.indicators, prepared.model(), equations, summary.final);
   add_neglected(c, scene, last != nullptr ? last->terms : scene.formulation->terms());
   add_common_velocity(c, part_of_common_velocity(prepared, evidence.beyond, summary));
   return c;

@@ -1,9 +1,12 @@
 #include "withy/study/indicators.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/measured_place.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/validity_limits.hpp"
 
 namespace withy::study {
@@ -107,6 +110,22 @@ std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary,
   add_step(all, scene, summary);
   std::stable_sort(all.begin(), all.end(), [](const Indicator& a, const Indicator& b) { return a.use() > b.use(); });
   return all;
+}
+
+void add_in_place(std::vector<Indicator>& indicators, Indicator indicator) {
+  const auto after =
+      std::find_if(indicators.begin(), indicators.end(), [&](const Indicator& i) { return i.use() < indicator.use(); });
+  indicators.insert(after, std::move(indicator));
+}
+
+std::optional<double> add_rounding(std::vector<Indicator>& indicators, const Model& model,
+                                   const EquationsOfMotion& equations, const State& state) {
+  constexpr double limit = 1e-6;
+  const double rounding = rounding_error(model, equations, state).relative;
+  if (!std::isfinite(rounding)) return {};
+  add_in_place(indicators, {"error that rounding leaves the accelerations", rounding, limit,
+                            "accelerations have fewer than six digits"});
+  return rounding;
 }
 
 }  // namespace withy::study

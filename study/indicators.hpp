@@ -43,4 +43,10 @@ bool needs_no_modes(const Scene& scene, const BodyValidity& body, const RunSumma
 /// \param used what the run kept in the end, where that is not what the scene's formulation says
 std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary, std::optional<Terms> used = {});
 
+/// Adds one in its place.
+void add_in_place(std::vector<Indicator>& indicators, Indicator indicator);
+/// Adds the error that rounding leaves the accelerations at a state, where that is a number. \returns it
+std::optional<double> add_rounding(std::vector<Indicator>& indicators, const Model& model,
+                                   const EquationsOfMotion& equations, const State& state);
+
 }  // namespace withy::study

@@ -12,7 +12,9 @@ std::vector<Indicator> indicators_at(const Prepared& prepared, const State& stat
     const RunSummary summary = withy::simulate(prepared.model(), *prepared.equations, *prepared.scene.integrator, state,
                                                options, [](const State&) {});
     if (summary.status != RunStatus::completed) return {};
-    return indicators(prepared.scene, summary);
+    std::vector<Indicator> all = indicators(prepared.scene, summary);
+    add_rounding(all, prepared.model(), *prepared.equations, state);
+    return all;
   } catch (const std::invalid_argument&) {  // an integrator that cannot treat these equations
     return {};
   }

@@ -119,15 +119,15 @@ void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearM
 }
 
 std::string note_of_changing(const LinearModel& linear, double time) {
-  std::string note;
-  if (linear.frozen)
-    note =
-        "the equations change as hinges move: these are those of one instant and tell no stability (withy modes "
-        "--floquet looks at a whole turn)";
-  if (linear.changing.empty()) return note;
-  return note + (note.empty() ? "" : "; ") +
-         fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
+  if (linear.changing.empty()) return {};
+  return fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
                      quoted_list(linear.changing), time);
+}
+
+std::string note_of_frozen(const LinearModel& linear) {
+  return linear.frozen ? "the equations change as hinges move: these are those of one instant and tell no stability "
+                         "(withy modes --floquet looks at a whole turn)"
+                       : "";
 }
 
 LinearModel linear_model(const Configuration& c, const Ports& ports) {

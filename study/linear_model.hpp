@@ -48,5 +48,7 @@ LinearModel linear_model(const Configuration& configuration, const Ports& ports)
 /// What is to be known where hinges turn or loads change their gain with time, in a sentence without a full stop; empty
 /// elsewhere.
 std::string note_of_changing(const LinearModel& linear, double time);
+/// Where small motions are about a state whose equations change as hinges move, a sentence; else empty.
+std::string note_of_frozen(const LinearModel& linear);
 
 }  // namespace withy::study

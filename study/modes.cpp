@@ -75,10 +75,7 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
     at.bent = bent_text(c, state);
   }
   try {
-    // A state that somebody gives may be one of a motion: what accelerates bears on its small motions.
-    const Eigen::VectorXd accelerations = as_is && !is_steady(c) ? withy::accelerations(c.dynamics(), state, c.held())
-                                                                 : c.dynamics().steady_accelerations(state.time);
-    const Tangents tangents = c.dynamics().tangents(state.time, state.y, accelerations);
+    const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
     if (c.sampled()) {
       Configuration about = c;
       about.set_state(state);

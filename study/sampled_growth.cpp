@@ -46,9 +46,8 @@ std::string sampled_growth_text(const Prepared& prepared, const RunSummary& summ
     const Configuration c(prepared, prepared.scene.initial, {});
     const ModesAt at = modes_at(c, false);
     if (!at.problem.empty() || at.modes.empty()) return {};
-    const Mode& fastest = *std::max_element(at.modes.begin(), at.modes.end(), [](const Mode& a, const Mode& b) {
-      return a.growth() < b.growth();
-    });
+    const Mode& fastest = *std::max_element(at.modes.begin(), at.modes.end(),
+                                            [](const Mode& a, const Mode& b) { return a.growth() < b.growth(); });
     const double lasted = summary.reached - prepared.scene.initial.time;
     if (!unstable(at, fastest) || !(fastest.growth() * lasted > 1)) return {};
     const double held = growth_as_held(c, at.steady->steady.state);

@@ -71,8 +71,8 @@ class Clocks {
   std::vector<double> before_;  ///< states of a load that may switch
 };
 
-/// Watches functions for zeros within accepted steps: switching functions of loads, events, and kinks of loads, of which
-/// those count that a step has passed and come back from.
+/// Watches functions for zeros within accepted steps: switching functions of loads, events, and kinks of loads, of
+/// which those count that a step has passed and come back from.
 class ZeroWatch {
  public:
   /// A zero that a function has passed.
@@ -135,11 +135,11 @@ class ZeroWatch {
   std::size_t switches_ = 0;
   std::vector<LoadSlot> slots_;  ///< of loads with switching functions
   std::vector<const Kinks*> kinks_;
-  std::vector<int> signs_;       ///< −1, 0, +1 at the last accepted state
+  std::vector<int> signs_;  ///< −1, 0, +1 at the last accepted state
   std::vector<int> before_;
   std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;
-  std::array<Row, 3> rows_;  ///< those looked at last, in the order of their times
+  std::array<Row, 3> rows_;     ///< those looked at last, in the order of their times
   std::vector<double> landed_;  ///< values at the state that `land` has seen
   std::vector<double> unsure_;  ///< how far from zero these may be of functions that passed there; else below zero
   std::vector<Zero> zeros_;

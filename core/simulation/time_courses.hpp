@@ -21,8 +21,8 @@ class TimeCourses {
 
  private:
   static constexpr std::size_t intervals = 4096;
-  double start_ = 0, interval_ = 0;  ///< [s]
-  std::vector<double> longest_;      ///< of steps in each interval [s]; infinite: any; empty where none is limited
+  double start_ = 0, interval_ = 0;   ///< [s]
+  std::vector<double> longest_;       ///< of steps in each interval [s]; infinite: any; empty where none is limited
   std::vector<std::size_t> limited_;  ///< the first interval from each on that is limited; past the last: none
 };
 

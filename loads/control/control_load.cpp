@@ -147,7 +147,7 @@ class ContinuousControl : public BoundControl, public ContinuousPart, public Cou
 
   Signals signals_;
   std::vector<std::string> states_;
-  const CourseOfTime* course_;  ///< of the block; null: none
+  const CourseOfTime* course_;          ///< of the block; null: none
   std::vector<int> along_;              ///< one a signal
   bool follows_accelerations_ = false;  ///< what it commands does, at once
   bool commands_at_once_ = false;       ///< what it commands depends on what is measured then, not on states alone

@@ -153,7 +153,7 @@ initial: {hinges: {f: {position: {orientation: [1, 0, 0, 0], position: [7, 8, 9]
   const Finished f = withy(folder, {"equilibrium", "bus.yaml", "--lock", "f.5"});
   EXPECT_EQ(f.status, 0) << f.err;
   for (const char* row :
-       {"f\\.qz +0 +1 +- +- +-", "f\\.wz +- +0\\.8 +no +-", "f\\.vx +- +4 +no +-", "f\\.vz +- +6 +yes +"})
+       {"f\\.qz +0 +1 +- +- +-", "f\\.wz +- +0\\.8 +no +-", "f\\.x +7 +m +4 +no +-", "f\\.z +9 +m +6 +yes +0"})
     EXPECT_THAT(f.out, testing::ContainsRegex(row)) << f.out;
 }
 

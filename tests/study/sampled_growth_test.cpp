@@ -20,14 +20,14 @@ using testing::Not;
 
 /// A rigid rotor under a sampled controller.
 RunSummary rotor(double derivative, const std::string& more) {
-  const SceneValues values =
-      SceneValues::parse("format: withy/1\nformulation: quadratic\ntime: {end: 60}\n"
-                         "bodies: {rotor: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}\n"
-                         "hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: rotor}}\n"
-                         "initial: {hinges: {axle: {position: [1e-3]}}}\n"
-                         "loads:\n  law: {type: pid, of: axle, hinge: axle, proportional: 100, derivative: " +
-                             std::to_string(derivative) + ", sample: 0.1}\n" + more,
-                         "sampled.yaml");
+  const SceneValues values = SceneValues::parse(
+      "format: withy/1\nformulation: quadratic\ntime: {end: 60}\n"
+      "bodies: {rotor: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}\n"
+      "hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: rotor}}\n"
+      "initial: {hinges: {axle: {position: [1e-3]}}}\n"
+      "loads:\n  law: {type: pid, of: axle, hinge: axle, proportional: 100, derivative: " +
+          std::to_string(derivative) + ", sample: 0.1}\n" + more,
+      "sampled.yaml");
   RunSettings settings;
   settings.look_beyond = false;
   return run(prepare(values, plugins()), plugins(), settings).summary;
