@@ -11,7 +11,7 @@
 namespace withy {
 
 /// The relative errors that a trade answers for where nobody asks for others.
-inline const std::vector<double> usual_shares = {0.1, 0.01, 0.001};
+inline std::vector<double> usual_shares() { return {0.1, 0.01, 0.001}; }
 
 /// The cheapest of the points at one set of values gone over, within an error.
 struct CheapestPoint {

@@ -21,7 +21,7 @@ nlohmann::ordered_json trade_reference_json(const study::TradeReference& referen
 /// The content of trade.json. \param front one a result \param shares errors that the cheapest is named of
 nlohmann::ordered_json trade_json(const Scene& scene, const study::TradeStudy& study,
                                   const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
-                                  const std::vector<double>& shares = usual_shares);
+                                  const std::vector<double>& shares = usual_shares());
 /// A line a point.
 std::string trade_csv(const std::vector<study::TradeResult>& results, const std::vector<bool>& front);
 /// Error over cost, both logarithmic; a colour a formulation, the front as a line. A panel for each of the values gone

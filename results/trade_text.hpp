@@ -14,6 +14,6 @@ namespace withy {
 /// each, why points failed. \param front one a result \param shares errors that the cheapest is named of
 std::string trade_text(const std::string& title, const study::TradeStudy& study,
                        const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
-                       Registry& registry, const std::vector<double>& shares = usual_shares);
+                       Registry& registry, const std::vector<double>& shares = usual_shares());
 
 }  // namespace withy

@@ -27,7 +27,7 @@ ExitStatus trade(const TradeArguments& arguments) {
         "--measure frequencies, --lock and --spin go with --limit; frequencies over a range are what "
         "withy modes --sweep shows");
   const std::vector<double> shares =
-      arguments.accuracy.empty() ? usual_shares : study::read_shares(arguments.accuracy, "accuracy");
+      arguments.accuracy.empty() ? usual_shares() : study::read_shares(arguments.accuracy, "accuracy");
   const Engine engine(arguments);
   const std::vector<study::Point> points = points_of(arguments.axes, arguments.over, engine);
   std::optional<TradeFolder> store;
