@@ -39,12 +39,12 @@ std::string cheapest_text(const std::vector<study::TradeResult>& results, const 
 
 nlohmann::ordered_json cheapest_json(const std::vector<study::TradeResult>& results,
                                      const std::vector<double>& shares) {
-  using Json = nlohmann::ordered_json;
-  Json all = Json::array();
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const CheapestPoint& p : cheapest_points(results, shares))
     all.push_back({{"over", p.over},
                    {"within", p.within},
-                   {"point", p.result == nullptr ? Json() : Json(p.result - results.data())}});
+                   {"point", p.result == nullptr ? nlohmann::ordered_json()
+                                                 : nlohmann::ordered_json(p.result - results.data())}});
   return all;
 }
 

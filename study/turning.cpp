@@ -124,7 +124,8 @@ std::string not_repeating(const Configuration& c, const State& steady, const Tur
   for (std::size_t load = 0; load < model.loads().size(); ++load) {
     double greatest = 0, change = 0;
     for (int k = 0; k < 2 * instants; ++k) {
-      State state = carried(model, turning, steady, turning.period * (k / 2) / instants);
+      const int instant = k / 2;
+      State state = carried(model, turning, steady, turning.period * instant / instants);
       if (k % 2 == 1) state = displaced_anyhow(c, std::move(state));
       equations.load_efforts(state.time, state.y, static_cast<int>(load), now, work);
       equations.load_efforts(state.time + turning.period, state.y, static_cast<int>(load), later, work);
