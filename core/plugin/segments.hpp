@@ -21,9 +21,8 @@ namespace withy {
 /// \param value  checked, with `length` [m] and `segments`
 /// \param specs  of the value's members
 /// \param make   makes a body of the value of a segment; null after it has reported
-/// \param vibrating  the whole in functions that its lowest modes are found by, for the damping: the scene's few
-/// functions
-///   of a segment may miss the lowest frequency of the whole by far. Null: `whole`
+/// \param vibrating  the whole in functions that its lowest modes are found by, for the damping: those of a segment,
+///                   which are few, may miss its lowest frequency by far. Null: `whole`
 /// \returns null where a segment is not made
 std::unique_ptr<Body> in_segments(std::unique_ptr<Body> whole, const Value& value,
                                   const std::vector<ParameterSpec>& specs,
