@@ -7,6 +7,7 @@
 
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/held_numbers.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/parabola.hpp"
 #include "withy/core/simulation/same_instant.hpp"
@@ -105,8 +106,22 @@ bool Clocks::renew(State& state, const LoadSlot& slot, const Crossing& crossing)
   return !std::equal(own.begin(), own.end(), before_.begin());
 }
 
+/// Of the coordinates that are integrals of a rate.
+std::vector<ZeroWatch::Moving> ZeroWatch::moving_coordinates(const Model& model) {
+  std::vector<Moving> moving;
+  const auto& layout = model.layout();
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      if (rates[i].coordinate)
+        moving.push_back(
+            {layout.hinges[h].position + *rates[i].coordinate, layout.positions + layout.hinges[h].speed + i});
+  }
+  return moving;
+}
+
 ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start, double end, bool kinks)
-    : model_(model), events_(events), inside_(start), begun_(start.y) {
+    : model_(model), events_(events), inside_(start) {
   for (const LoadSlot& slot : model.layout().discrete_slots) {
     if (part_of(model, slot).switches() == 0) continue;
     switches_ += part_of(model, slot).switches();
@@ -125,6 +140,7 @@ ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const
   ends_.resize(values_.size());
   for (Row& row : rows_) row.values.resize(values_.size());
   if (!empty()) parts_.emplace(model, start.time, end);
+  if (of_kinks > 0) moving_ = moving_coordinates(model);
   begin_at(start);
 }
 
@@ -244,13 +260,22 @@ void ZeroWatch::cross_there_and_back(const Stepper& stepper, std::size_t f, std:
   }
 }
 
-const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, double from) {
-  // A function may pass zero and come back within a step: between looks a parabola through three of them tells.
-  constexpr std::size_t looks_in_a_part = 4;
+bool ZeroWatch::may_pass(const State& before, const State& after) {
+  evaluate(after.time, after.y, values_);
+  std::transform(values_.begin(), values_.end(), before_.begin(), sign);
+  if (before_ != signs_) return true;
+  const auto tangent_passes = [&](const State& state, double step) {
+    inside_.y = state.y;
+    for (const Moving& x : moving_) inside_.y[x.position] += step * state.y[x.rate];
+    evaluate(state.time + step, inside_.y, values_);
+    return !std::equal(values_.begin(), values_.end(), signs_.begin(), [](double v, int s) { return sign(v) == s; });
+  };
+  const double length = after.time - before.time;
+  return tangent_passes(before, length) || tangent_passes(after, -length);
+}
+
+void ZeroWatch::look_through(const Stepper& stepper, double from, std::size_t looks) {
   const double to = stepper.state().time;
-  zeros_.clear();
-  std::fill(unsure_.begin(), unsure_.end(), -1);
-  before_ = start_signs_ = signs_;
   const auto take = [&](double t) {
     std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
     look_at(stepper, t);
@@ -258,10 +283,6 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, doub
     rows_.back().values = values_;
   };
   take(from);
-  begun_ = inside_.y;
-  // The kinks are those of coordinates, which a parabola follows over a step.
-  const bool kinks_alone = switches_ + events_.size() == 0;
-  const std::size_t looks = kinks_alone ? 2 : looks_in_a_part * (*parts_)(to - from, begun_, stepper.state().y);
   for (std::size_t look = 1; look <= looks; ++look) {
     take(look == looks ? to : from + (to - from) * static_cast<double>(look) / static_cast<double>(looks));
     for (std::size_t f = 0; f < before_.size(); ++f) {
@@ -270,6 +291,21 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, doub
       if (look >= 2) cross_there_and_back(stepper, f, 1);
     }
   }
+}
+
+const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, const State& before) {
+  // A function may pass zero and come back within a step: between looks a parabola through three of them tells.
+  constexpr std::size_t looks_in_a_part = 4;
+  const State& after = stepper.state();
+  zeros_.clear();
+  std::fill(unsure_.begin(), unsure_.end(), -1);
+  before_ = start_signs_ = signs_;
+  // The kinks are those of coordinates, which a parabola follows over a step.
+  const bool kinks_alone = switches_ + events_.size() == 0;
+  if (kinks_alone && !may_pass(before, after)) return zeros_;
+  before_ = signs_;
+  look_through(stepper, before.time,
+               kinks_alone ? 2 : looks_in_a_part * (*parts_)(after.time - before.time, before.y, after.y));
   // A step that ends beyond a kink was made with it in sight.
   std::erase_if(zeros_,
                 [&](const Zero& z) { return is_kink(z.function) && before_[z.function] != start_signs_[z.function]; });

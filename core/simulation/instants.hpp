@@ -87,8 +87,9 @@ class ZeroWatch {
             double end = std::numeric_limits<double>::infinity(), bool kinks = false);
   [[nodiscard]] bool empty() const { return signs_.empty(); }
 
-  /// The zeros passed in the stepper's last step, which began at `from` [s], on its dense output, in their order.
-  const std::vector<Zero>& find(const Stepper& stepper, double from);
+  /// The zeros passed in the stepper's last step, which began at the state `before`, on its dense output, in their
+  /// order.
+  const std::vector<Zero>& find(const Stepper& stepper, const State& before);
   /// Says that all zeros that `find` has given have been dealt with.
   void pass() { signs_ = before_; }
   /// Whether a zero changes the run: a load switches or has a kink there, or an event stops it.
@@ -121,6 +122,11 @@ class ZeroWatch {
     std::vector<double> values;
   };
   void look_at(const Stepper& stepper, double t);
+  /// Whether functions of coordinates alone pass zero in a step, or may and come back: where the tangent at one of the
+  /// ends does. What bends one way lies on one side of its tangents. Leaves the signs at the end.
+  [[nodiscard]] bool may_pass(const State& before, const State& after);
+  /// Takes up all zeros of a step, from `looks` looks into it.
+  void look_through(const Stepper& stepper, double from, std::size_t looks);
   /// The end of the bracket [a, b] in which a function passes zero, where it has the sign it has at b.
   [[nodiscard]] double zero_between(const Stepper& stepper, std::size_t f, double a, double b, double value_at_b);
   /// Takes up the zeros of a function between a row and the next.
@@ -145,7 +151,11 @@ class ZeroWatch {
   std::vector<Zero> zeros_;
   State inside_;
   std::optional<StepParts> parts_;  ///< nothing where nothing is watched
-  std::vector<double> begun_;       ///< y where the last step began
+  struct Moving {
+    std::size_t position, rate;  ///< places in y of a coordinate and of its derivative
+  };
+  static std::vector<Moving> moving_coordinates(const Model& model);
+  std::vector<Moving> moving_;
 };
 
 }  // namespace withy
