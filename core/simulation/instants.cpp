@@ -8,6 +8,7 @@
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/held_numbers.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/simulation/cubic.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/parabola.hpp"
 #include "withy/core/simulation/same_instant.hpp"
@@ -207,14 +208,26 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::leap(const State& state) {
   return zeros_;
 }
 
-void ZeroWatch::look_at(const Stepper& stepper, double t) {
-  stepper.interpolate(t, inside_.y);
+void ZeroWatch::look_at(const Course& course, double t) {
+  if (course.by_ends) {
+    between(course.before, course.stepper.state(), t);
+  } else {
+    course.stepper.interpolate(t, inside_.y);
+  }
   evaluate(t, inside_.y, values_);
 }
 
-double ZeroWatch::zero_between(const Stepper& stepper, std::size_t f, double a, double b, double value_at_b) {
+void ZeroWatch::between(const State& before, const State& after, double t) {
+  const double length = after.time - before.time, s = (t - before.time) / length;
+  for (std::size_t i = 0; i < inside_.y.size(); ++i) inside_.y[i] = std::lerp(before.y[i], after.y[i], s);
+  for (const Moving& x : moving_)
+    inside_.y[x.position] =
+        cubic(s, before.y[x.position], length * before.y[x.rate], after.y[x.position], length * after.y[x.rate]);
+}
+
+double ZeroWatch::zero_between(const Course& course, std::size_t f, double a, double b, double value_at_b) {
   const auto value = [&](double t) {
-    look_at(stepper, t);
+    look_at(course, t);
     return values_[f];
   };
   const double value_at_a = value(a);
@@ -225,16 +238,16 @@ double ZeroWatch::zero_between(const Stepper& stepper, std::size_t f, double a, 
       .second;
 }
 
-void ZeroWatch::cross(const Stepper& stepper, std::size_t f, const Row& begin, const Row& end) {
+void ZeroWatch::cross(const Course& course, std::size_t f, const Row& begin, const Row& end) {
   const int now = sign(end.values[f]);
   if (now == 0 || now == before_[f]) return;
   // Else it began on its zero.
   if (before_[f] != 0 && noticed(f, now))
-    zeros_.push_back({zero_between(stepper, f, begin.time, end.time, end.values[f]), f, now});
+    zeros_.push_back({zero_between(course, f, begin.time, end.time, end.values[f]), f, now});
   before_[f] = now;
 }
 
-void ZeroWatch::cross_there_and_back(const Stepper& stepper, std::size_t f, std::size_t interval) {
+void ZeroWatch::cross_there_and_back(const Course& course, std::size_t f, std::size_t interval) {
   const Row &a = rows_[interval], &b = rows_[interval + 1];
   const int outside = sign(a.values[f]);
   if (outside == 0 || sign(b.values[f]) != outside || before_[f] == 0) return;
@@ -246,13 +259,13 @@ void ZeroWatch::cross_there_and_back(const Stepper& stepper, std::size_t f, std:
     const bool within = at > a.time && at < b.time;
     const double nearer = std::min(std::abs(a.values[f]), std::abs(b.values[f]));
     if (!within || !(outside * along(t, x, at) < nearer)) return;
-    look_at(stepper, at);
+    look_at(course, at);
     const double there = values_[f];
     if (sign(there) == -outside) {
       const auto found = [&](const Zero& z) { return z.function == f && z.time >= a.time && z.time <= b.time; };
       if (std::any_of(zeros_.begin(), zeros_.end(), found)) return;
-      if (noticed(f, -outside)) zeros_.push_back({zero_between(stepper, f, a.time, at, there), f, -outside});
-      if (noticed(f, outside)) zeros_.push_back({zero_between(stepper, f, at, b.time, b.values[f]), f, outside});
+      if (noticed(f, -outside)) zeros_.push_back({zero_between(course, f, a.time, at, there), f, -outside});
+      if (noticed(f, outside)) zeros_.push_back({zero_between(course, f, at, b.time, b.values[f]), f, outside});
       return;
     }
     t = {a.time, at, b.time};
@@ -274,28 +287,28 @@ bool ZeroWatch::may_pass(const State& before, const State& after) {
   return tangent_passes(before, length) || tangent_passes(after, -length);
 }
 
-void ZeroWatch::look_through(const Stepper& stepper, double from, std::size_t looks) {
-  const double to = stepper.state().time;
+void ZeroWatch::look_through(const Course& course, std::size_t first, std::size_t looks) {
+  const double from = course.before.time, to = course.stepper.state().time;
   const auto take = [&](double t) {
     std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
-    look_at(stepper, t);
+    look_at(course, t);
     rows_.back().time = t;
     rows_.back().values = values_;
   };
   take(from);
   for (std::size_t look = 1; look <= looks; ++look) {
     take(look == looks ? to : from + (to - from) * static_cast<double>(look) / static_cast<double>(looks));
-    for (std::size_t f = 0; f < before_.size(); ++f) {
-      cross(stepper, f, rows_[1], rows_[2]);
-      if (look == 2) cross_there_and_back(stepper, f, 0);
-      if (look >= 2) cross_there_and_back(stepper, f, 1);
+    for (std::size_t f = first; f < before_.size(); ++f) {
+      cross(course, f, rows_[1], rows_[2]);
+      if (look == 2) cross_there_and_back(course, f, 0);
+      if (look >= 2) cross_there_and_back(course, f, 1);
     }
   }
 }
 
 const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, const State& before) {
   // A function may pass zero and come back within a step: between looks a parabola through three of them tells.
-  constexpr std::size_t looks_in_a_part = 4;
+  constexpr std::size_t looks_in_a_part = 4, looks_at_kinks = 2;
   const State& after = stepper.state();
   zeros_.clear();
   std::fill(unsure_.begin(), unsure_.end(), -1);
@@ -304,8 +317,14 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, cons
   const bool kinks_alone = switches_ + events_.size() == 0;
   if (kinks_alone && !may_pass(before, after)) return zeros_;
   before_ = signs_;
-  look_through(stepper, before.time,
-               kinks_alone ? 2 : looks_in_a_part * (*parts_)(after.time - before.time, before.y, after.y));
+  look_through({stepper, before, false}, 0,
+               kinks_alone ? looks_at_kinks : looks_in_a_part * (*parts_)(after.time - before.time, before.y, after.y));
+  const std::size_t first_kink = switches_ + events_.size();
+  if (!kinks_.empty() &&
+      std::none_of(zeros_.begin(), zeros_.end(), [&](const Zero& z) { return is_kink(z.function); })) {
+    std::copy(signs_.begin() + first_kink, signs_.end(), before_.begin() + first_kink);
+    look_through({stepper, before, true}, first_kink, looks_at_kinks);
+  }
   // A step that ends beyond a kink was made with it in sight.
   std::erase_if(zeros_,
                 [&](const Zero& z) { return is_kink(z.function) && before_[z.function] != start_signs_[z.function]; });

@@ -121,18 +121,28 @@ class ZeroWatch {
     double time = 0;
     std::vector<double> values;
   };
-  void look_at(const Stepper& stepper, double t);
+  /// The motion within the last step.
+  struct Course {
+    const Stepper& stepper;
+    const State& before;
+    /// By the states at its ends alone, not by what the stepper interpolates: of that, evaluations that nothing checks
+    /// may be a part, and beyond a kink they bend the motion away from it.
+    bool by_ends;
+  };
+  void look_at(const Course& course, double t);
+  /// Sets the state inside: coordinates that are integrals of a rate by the cubic through both ends with both rates.
+  void between(const State& before, const State& after, double t);
   /// Whether functions of coordinates alone pass zero in a step, or may and come back: where the tangent at one of the
   /// ends does. What bends one way lies on one side of its tangents. Leaves the signs at the end.
   [[nodiscard]] bool may_pass(const State& before, const State& after);
-  /// Takes up all zeros of a step, from `looks` looks into it.
-  void look_through(const Stepper& stepper, double from, std::size_t looks);
+  /// Takes up the zeros of a step of the functions from `first` on, from `looks` looks into it.
+  void look_through(const Course& course, std::size_t first, std::size_t looks);
   /// The end of the bracket [a, b] in which a function passes zero, where it has the sign it has at b.
-  [[nodiscard]] double zero_between(const Stepper& stepper, std::size_t f, double a, double b, double value_at_b);
+  [[nodiscard]] double zero_between(const Course& course, std::size_t f, double a, double b, double value_at_b);
   /// Takes up the zeros of a function between a row and the next.
-  void cross(const Stepper& stepper, std::size_t f, const Row& begin, const Row& end);
+  void cross(const Course& course, std::size_t f, const Row& begin, const Row& end);
   /// The same where it has one sign at both, and the parabola through three rows has another in between.
-  void cross_there_and_back(const Stepper& stepper, std::size_t f, std::size_t interval);
+  void cross_there_and_back(const Course& course, std::size_t f, std::size_t interval);
   /// Whether a function that has this sign now is to be noticed.
   [[nodiscard]] bool noticed(std::size_t function, int direction) const;
 
