@@ -138,6 +138,8 @@ ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const
   values_.resize(switches_ + events.size() + of_kinks);
   signs_.resize(values_.size());
   unsure_.assign(values_.size(), -1);
+  near_.resize(values_.size());
+  end_signs_.resize(values_.size());
   ends_.resize(values_.size());
   for (Row& row : rows_) row.values.resize(values_.size());
   if (!empty()) parts_.emplace(model, start.time, end);
@@ -193,6 +195,9 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& before, const S
   };
   std::for_each(known.begin(), known.end(), passed);
   std::for_each(zeros_.begin(), zeros_.end(), passed);
+  // Functions that look for the same zero in the other direction are as near.
+  for (std::size_t f = 0; f < signs_.size(); ++f)
+    if (std::abs(landed_[f]) <= 1e-9 * std::abs(ends_[f])) passed({state.time, f, 0});
   return zeros_;
 }
 
@@ -247,6 +252,14 @@ void ZeroWatch::cross(const Course& course, std::size_t f, const Row& begin, con
   before_[f] = now;
 }
 
+void ZeroWatch::leave(std::size_t f, double from) {
+  const double value = rows_.back().values[f];
+  const int now = sign(value);
+  if (std::abs(value) <= near_[f] || now == 0) return;
+  if (before_[f] * now < 0 && noticed(f, now)) zeros_.push_back({from, f, now});
+  before_[f] = now;
+}
+
 void ZeroWatch::cross_there_and_back(const Course& course, std::size_t f, std::size_t interval) {
   const Row &a = rows_[interval], &b = rows_[interval + 1];
   const int outside = sign(a.values[f]);
@@ -287,47 +300,74 @@ bool ZeroWatch::may_pass(const State& before, const State& after) {
   return tangent_passes(before, length) || tangent_passes(after, -length);
 }
 
-void ZeroWatch::look_through(const Course& course, std::size_t first, std::size_t looks) {
+void ZeroWatch::take(const Course& course, double t) {
+  std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
+  look_at(course, t);
+  rows_.back().time = t;
+  rows_.back().values = values_;
+}
+
+void ZeroWatch::look_through(const Course& course, std::size_t first, std::size_t looks,
+                             const std::function<bool(const Zero&)>& cuts) {
   const double from = course.before.time, to = course.stepper.state().time;
-  const auto take = [&](double t) {
-    std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
-    look_at(course, t);
-    rows_.back().time = t;
-    rows_.back().values = values_;
-  };
-  take(from);
+  const double interval = (to - from) / static_cast<double>(looks);
+  take(course, from);
+  // What has just passed its zero has, there, the sign that rounding leaves.
+  constexpr double little_later = 0x1p-10;
+  const auto near = [&](std::size_t f) { return near_[f] >= 0; };
+  bool any_near = false;
+  for (std::size_t f = first; f < before_.size(); ++f) any_near = any_near || near(f);
+  if (any_near) {
+    take(course, from + little_later * interval);
+    for (std::size_t f = first; f < before_.size(); ++f) {
+      if (near(f)) {
+        leave(f, from);
+      } else {
+        cross(course, f, rows_[1], rows_[2]);
+      }
+    }
+  }
   for (std::size_t look = 1; look <= looks; ++look) {
-    take(look == looks ? to : from + (to - from) * static_cast<double>(look) / static_cast<double>(looks));
+    take(course, look == looks ? to : from + interval * static_cast<double>(look));
     for (std::size_t f = first; f < before_.size(); ++f) {
       cross(course, f, rows_[1], rows_[2]);
       if (look == 2) cross_there_and_back(course, f, 0);
       if (look >= 2) cross_there_and_back(course, f, 1);
     }
+    if (look >= 2 && std::any_of(zeros_.begin(), zeros_.end(), cuts)) return;
   }
 }
 
-const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, const State& before) {
+const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, const State& before,
+                                                    const std::function<bool(const Zero&)>& cuts) {
   // A function may pass zero and come back within a step: between looks a parabola through three of them tells.
   constexpr std::size_t looks_in_a_part = 4, looks_at_kinks = 2;
   const State& after = stepper.state();
   zeros_.clear();
+  for (std::size_t f = 0; f < signs_.size(); ++f) near_[f] = signs_[f] == 0 ? std::max(unsure_[f], 0.0) : unsure_[f];
   std::fill(unsure_.begin(), unsure_.end(), -1);
   before_ = start_signs_ = signs_;
   // The kinks are those of coordinates, which a parabola follows over a step.
-  const bool kinks_alone = switches_ + events_.size() == 0;
-  if (kinks_alone && !may_pass(before, after)) return zeros_;
-  before_ = signs_;
-  look_through({stepper, before, false}, 0,
-               kinks_alone ? looks_at_kinks : looks_in_a_part * (*parts_)(after.time - before.time, before.y, after.y));
   const std::size_t first_kink = switches_ + events_.size();
+  if (first_kink == 0 && !may_pass(before, after)) return zeros_;
+  evaluate(after.time, after.y, values_);
+  std::transform(values_.begin(), values_.end(), end_signs_.begin(), sign);
+  // A step that ends beyond a kink was made with it in sight.
+  const auto counts = [&](const Zero& z) {
+    return !is_kink(z.function) || end_signs_[z.function] == signs_[z.function];
+  };
+  const std::function<bool(const Zero&)> ends = [&](const Zero& z) { return counts(z) && cuts(z); };
+  before_ = signs_;
+  look_through(
+      {stepper, before, false}, 0,
+      first_kink == 0 ? looks_at_kinks : looks_in_a_part * (*parts_)(after.time - before.time, before.y, after.y),
+      ends);
   if (!kinks_.empty() &&
       std::none_of(zeros_.begin(), zeros_.end(), [&](const Zero& z) { return is_kink(z.function); })) {
     std::copy(signs_.begin() + first_kink, signs_.end(), before_.begin() + first_kink);
-    look_through({stepper, before, true}, first_kink, looks_at_kinks);
+    look_through({stepper, before, true}, first_kink, looks_at_kinks, ends);
   }
-  // A step that ends beyond a kink was made with it in sight.
-  std::erase_if(zeros_,
-                [&](const Zero& z) { return is_kink(z.function) && before_[z.function] != start_signs_[z.function]; });
+  std::erase_if(zeros_, [&](const Zero& z) { return !counts(z); });
   std::stable_sort(zeros_.begin(), zeros_.end(), [](const Zero& a, const Zero& b) { return a.time < b.time; });
   // What nobody notices has passed.
   const auto waits = [&](std::size_t f) {

@@ -88,8 +88,9 @@ class ZeroWatch {
   [[nodiscard]] bool empty() const { return signs_.empty(); }
 
   /// The zeros passed in the stepper's last step, which began at the state `before`, on its dense output, in their
-  /// order.
-  const std::vector<Zero>& find(const Stepper& stepper, const State& before);
+  /// order; not much further than to the first that `cuts` the step, after which it is made again.
+  const std::vector<Zero>& find(const Stepper& stepper, const State& before,
+                                const std::function<bool(const Zero&)>& cuts);
   /// Says that all zeros that `find` has given have been dealt with.
   void pass() { signs_ = before_; }
   /// Whether a zero changes the run: a load switches or has a kink there, or an event stops it.
@@ -112,7 +113,10 @@ class ZeroWatch {
   [[nodiscard]] const RunEvent& event(std::size_t function) const { return events_[function - switches_]; }
   /// Its index among the events.
   [[nodiscard]] std::size_t index(const Zero& zero) const { return zero.function - switches_; }
-  void remember(Memory& memory) { memory(signs_); }
+  void remember(Memory& memory) {
+    memory(signs_);
+    for (double& unsure : unsure_) memory(unsure);
+  }
 
  private:
   void evaluate(double t, std::span<const double> y, std::span<double> values) const;
@@ -136,12 +140,17 @@ class ZeroWatch {
   /// ends does. What bends one way lies on one side of its tangents. Leaves the signs at the end.
   [[nodiscard]] bool may_pass(const State& before, const State& after);
   /// Takes up the zeros of a step of the functions from `first` on, from `looks` looks into it.
-  void look_through(const Course& course, std::size_t first, std::size_t looks);
+  void look_through(const Course& course, std::size_t first, std::size_t looks,
+                    const std::function<bool(const Zero&)>& cuts);
+  void take(const Course& course, double t);
   /// The end of the bracket [a, b] in which a function passes zero, where it has the sign it has at b.
   [[nodiscard]] double zero_between(const Course& course, std::size_t f, double a, double b, double value_at_b);
   /// Takes up the zeros of a function between a row and the next.
   void cross(const Course& course, std::size_t f, const Row& begin, const Row& end);
-  /// The same where it has one sign at both, and the parabola through three rows has another in between.
+  /// Takes the sign, at the last row, of a function that began the step near its zero, and the zero that it has passed
+  /// with that.
+  void leave(std::size_t f, double from);
+  /// As `cross` where it has one sign at both rows, and the parabola through three rows has another in between.
   void cross_there_and_back(const Course& course, std::size_t f, std::size_t interval);
   /// Whether a function that has this sign now is to be noticed.
   [[nodiscard]] bool noticed(std::size_t function, int direction) const;
@@ -158,6 +167,8 @@ class ZeroWatch {
   std::array<Row, 3> rows_;     ///< those looked at last, in the order of their times
   std::vector<double> landed_;  ///< values at the state that `land` has seen
   std::vector<double> unsure_;  ///< how far from zero these may be of functions that passed there; else below zero
+  std::vector<double> near_;    ///< the same of those that begin the step so near: their signs are seen a little later
+  std::vector<int> end_signs_;  ///< at the end of the step
   std::vector<Zero> zeros_;
   State inside_;
   std::optional<StepParts> parts_;  ///< nothing where nothing is watched

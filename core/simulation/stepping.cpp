@@ -174,7 +174,7 @@ bool Stepping::to(double limit, bool watching) {
     check_arithmetic();
     if (ended_.step.outcome != StepResult::Outcome::ok) return sound(state()) && end(Cause::failed);
     if (watching && !zeros_.empty()) {
-      handled_ = zeros_.find(*stepper_, before_);
+      handled_ = zeros_.find(*stepper_, before_, [this](const Zero& z) { return changes_the_run(z); });
       const bool cut = std::any_of(handled_.begin(), handled_.end(), [&](const Zero& z) { return changes_the_run(z); });
       if (!act_on_zeros()) return false;
       if (cut && next_instant() < limit) return true;  // an event has made another due

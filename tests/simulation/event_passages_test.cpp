@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "acted_run.hpp"
 
@@ -102,6 +103,48 @@ TEST(EventPassages, of_an_event_with_a_delay_act_once_each_and_are_no_passages_o
       ASSERT_EQ(found.size(), expected.size()) << direction << name;
       for (std::size_t k = 0; k < found.size(); ++k)
         EXPECT_NEAR(found[k], expected[k] + delay, 1e-7) << direction << name;
+    }
+  }
+}
+
+/// Rate [rad/s] after 10 s of 1 kg m² that starts with `rate` at angle 0, where its motor is off, and is driven by
+/// `torque` while cos(angle) rises above and is above `value`: from passage to passage; and how many there are.
+std::pair<double, int> driven_by_its_place(double rate, double value, double torque) {
+  const double half = std::acos(value), turn = 2 * std::numbers::pi;
+  double t = 0, angle = 0, target = half;
+  for (int passages = 0;; ++passages) {
+    const bool on = passages > 0 && passages % 2 == 0, up = passages % 2 == 1;
+    const double acceleration = on ? torque : 0;
+    const double there = std::sqrt(rate * rate + 2 * acceleration * (target - angle));
+    const double span = 2 * (target - angle) / (rate + there);
+    if (t + span > 10) return {rate + acceleration * (10 - t), passages};
+    t += span, angle = target, rate = there;
+    target += up ? 2 * half : turn - 2 * half;
+  }
+}
+
+// One event looks for the way up, another for the way down of one number: where the step ends on the first, rounding
+// says which side the second begins on, and the way down comes before the step's first look.
+TEST(EventPassages, of_a_turning_place_switch_its_motor_on_and_off_in_turn) {
+  const struct { double rate, value, torque; } motors[] = {{10, 0.999, 20}, {30, 0.99, 50}, {100, 0.999, 500}};
+  for (const std::string integrator : {"dopri5", "dop853", "radau"}) {
+    for (const auto& motor : motors) {
+      const ActedRun run(fmt::format(
+          "format: withy/1\ntime: {{end: 10, output: 10}}\nintegrator: {}\n"
+          "bodies: {{disc: {{type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {{mark: {{position: [1, 0, "
+          "0]}}}}}}}}\n"
+          "hinges: {{axle: {{type: revolute, axis: [0, 0, 1], parent: world, child: disc}}}}\n"
+          "outputs: {{place: {{type: frame, of: disc.mark, show: position}}}}\n"
+          "loads: {{motor: {{type: hinge-effort, hinge: axle, law: constant, value: {}}}}}\n"
+          "initial: {{hinges: {{axle: {{rate: {}}}}}, settings: {{motor: off}}}}\n"
+          "events:\n"
+          "  up: {{signal: place.x, value: {}, direction: up, repeat: true, do: {{switch_on: motor}}}}\n"
+          "  down: {{signal: place.x, value: {}, direction: down, repeat: true, do: {{switch_off: motor}}}}\n",
+          integrator, motor.torque, motor.rate, motor.value, motor.value));
+      const auto [rate, count] = driven_by_its_place(motor.rate, motor.value, motor.torque);
+      EXPECT_EQ(run.summary.events.size(), static_cast<std::size_t>(count)) << integrator << motor.rate;
+      // Within a passage torque is constant, which each step integrates exactly; instants are known to rounding.
+      EXPECT_NEAR(run.rate("axle"), rate, 1e-9 * rate) << integrator << motor.rate;
     }
   }
 }
