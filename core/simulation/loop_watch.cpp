@@ -26,13 +26,23 @@ LoopWatch::LoopWatch(const EquationsOfMotion& equations, const State& initial)
 
 std::size_t LoopWatch::rank_beside(const EquationsOfMotion& equations, const State& initial) {
   std::vector<double> slopes(equations.size());
-  if (!equations.derivatives(initial.time, initial.y, slopes, work_).ok()) return 0;
-  const std::size_t positions = equations.layout().positions;
-  double fastest = 0;
-  for (std::size_t i = 0; i < positions; ++i) fastest = std::max(fastest, std::abs(slopes[i]));
-  if (!(fastest > 0) || !std::isfinite(fastest)) return 0;
+  const std::size_t positions = equations.layout().positions, speeds = equations.layout().speeds;
+  const auto fastest = [&](std::size_t first, std::size_t count) {
+    double most = 0;
+    for (std::size_t i = first; i < first + count; ++i) most = std::max(most, std::abs(slopes[i]));
+    return std::isfinite(most) ? most : 0;
+  };
   State there = initial;
-  for (std::size_t i = 0; i < positions; ++i) there.y[i] += beside / fastest * slopes[i];
+  if (!equations.derivatives(there.time, there.y, slopes, work_).ok()) return 0;
+  if (fastest(0, positions) == 0) {  // from rest it goes on along its accelerations
+    const double most = fastest(positions, speeds);
+    if (most == 0) return 0;
+    for (std::size_t i = positions; i < positions + speeds; ++i) there.y[i] = slopes[i] / most;
+    if (!equations.derivatives(there.time, there.y, slopes, work_).ok()) return 0;
+  }
+  const double most = fastest(0, positions);
+  if (most == 0) return 0;
+  for (std::size_t i = 0; i < positions; ++i) there.y[i] += beside / most * slopes[i];
   return loops_->close(there.y, work_).closed ? rank_at(there) : 0;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "withy/core/plugin/course_of_time.hpp"
 
@@ -10,8 +12,11 @@ namespace withy {
 namespace {
 
 constexpr double any = std::numeric_limits<double>::infinity();
-/// An interval in which a course changes by less of its range limits nothing.
-constexpr double least_share = 1.0 / 64;
+/// A change within an interval that is less of the size of a course is rounding.
+constexpr double rounding = 1e-9;
+/// How many times its scale a change is announced ahead of itself, and how many it takes until steps have seen it: they
+/// are as long as their errors allow from then on.
+constexpr double ahead = 4, seen = 16;
 
 std::vector<const CourseOfTime*> courses_of(const Model& model) {
   std::vector<const CourseOfTime*> all;
@@ -24,40 +29,94 @@ std::vector<const CourseOfTime*> courses_of(const Model& model) {
   return all;
 }
 
+/// For each interval of a course, given at their ends, how many intervals it takes there to go through the range of
+/// what it does between two rests; infinite where it rests.
+void add_scales(std::span<const double> values, std::span<double> scales) {
+  double size = 0;
+  for (const double x : values)
+    if (std::isfinite(x)) size = std::max(size, std::abs(x));
+  const auto change = [&](std::size_t k) {
+    const double d = std::abs(values[k + 1] - values[k]);
+    return std::isfinite(d) && d > rounding * size ? d : 0.0;
+  };
+  for (std::size_t k = 0; k < scales.size();) {
+    if (change(k) == 0) {
+      ++k;
+      continue;
+    }
+    const std::size_t first = k;
+    double least = values[k], greatest = values[k];
+    for (; k < scales.size() && change(k) > 0; ++k) {
+      least = std::min(least, values[k + 1]);
+      greatest = std::max(greatest, values[k + 1]);
+    }
+    for (std::size_t i = first; i < k; ++i) scales[i] = std::min(scales[i], (greatest - least) / change(i));
+  }
+}
+
+/// Each interval gets the least scale of those that announce themselves there.
+std::vector<double> announced(std::span<const double> scales) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < scales.size(); ++k)
+    if (scales[k] < any) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scales[a] < scales[b]; });
+  std::vector<double> result(scales.size(), any);
+  std::vector<std::size_t> open(scales.size() + 1);  // leads to the first interval at or after one that has none yet
+  for (std::size_t k = 0; k < open.size(); ++k) open[k] = k;
+  const auto first_open = [&](std::size_t k) {
+    while (open[k] != k) k = open[k] = open[open[k]];
+    return k;
+  };
+  for (const std::size_t k : order) {
+    const auto reach = static_cast<std::size_t>(std::min(ahead * scales[k], static_cast<double>(scales.size())));
+    const std::size_t end = std::min(k + reach + 1, scales.size());
+    for (std::size_t i = first_open(k > reach ? k - reach : 0); i < end; i = first_open(i)) {
+      result[i] = scales[k];
+      open[i] = i + 1;
+    }
+  }
+  return result;
+}
+
+/// Leaves the scales of intervals before which there has not been one as short for long enough; infinite elsewhere.
+void forget_seen(std::vector<double>& scales) {
+  std::vector<std::size_t> longer;  // intervals behind which no scale has been as long, longest first
+  std::vector<double> left(scales.size(), any);
+  for (std::size_t k = 0; k < scales.size(); ++k) {
+    while (!longer.empty() && scales[longer.back()] <= scales[k]) longer.pop_back();
+    const auto after =
+        std::partition_point(longer.begin(), longer.end(), [&](std::size_t i) { return scales[i] > 2 * scales[k]; });
+    const double since = static_cast<double>(k - (after == longer.begin() ? 0 : *(after - 1)));
+    if (since <= seen * scales[k]) left[k] = scales[k];
+    longer.push_back(k);
+  }
+  scales = std::move(left);
+}
+
 }  // namespace
 
 TimeCourses::TimeCourses(const Model& model, double start, double end) : start_(start) {
   const std::vector<const CourseOfTime*> all = courses_of(model);
   if (all.empty() || !std::isfinite(end) || !(end > start)) return;
   interval_ = (end - start) / static_cast<double>(intervals);
-  std::vector<double> values, row;
-  std::vector<double> longest(intervals, any);
+  std::vector<double> row, values(intervals + 1), scales(intervals, any);
   for (const CourseOfTime* course : all) {
-    const std::size_t count = course->courses();
-    values.assign((intervals + 1) * count, 0);
-    row.resize(count);
-    for (std::size_t k = 0; k <= intervals; ++k) {
-      course->course(start + static_cast<double>(k) * interval_, row);
-      std::copy(row.begin(), row.end(), values.begin() + static_cast<std::ptrdiff_t>(k * count));
-    }
-    for (std::size_t c = 0; c < count; ++c) {
-      double least = any, greatest = -any, size = 0;
+    row.resize(course->courses());
+    for (std::size_t c = 0; c < row.size(); ++c) {
       for (std::size_t k = 0; k <= intervals; ++k) {
-        const double x = values[k * count + c];
-        if (!std::isfinite(x)) continue;
-        least = std::min(least, x), greatest = std::max(greatest, x), size = std::max(size, std::abs(x));
+        course->course(start + static_cast<double>(k) * interval_, row);
+        values[k] = row[c];
       }
-      const double range = greatest - least;
-      if (!(range > 1e-9 * size)) continue;
-      for (std::size_t k = 0; k < intervals; ++k) {
-        const double change = std::abs(values[(k + 1) * count + c] - values[k * count + c]);
-        if (std::isfinite(change) && change >= least_share * range)
-          longest[k] = std::min(longest[k], range / change * interval_);
-      }
+      add_scales(values, scales);
     }
   }
-  if (std::all_of(longest.begin(), longest.end(), [](double l) { return l == any; })) return;
-  longest_ = std::move(longest);
+  longest_ = announced(scales);
+  forget_seen(longest_);
+  if (std::all_of(longest_.begin(), longest_.end(), [](double l) { return l == any; })) {
+    longest_.clear();
+    return;
+  }
+  for (double& l : longest_) l *= interval_;
   limited_.resize(intervals);
   for (std::size_t k = intervals, first = intervals; k-- > 0;) limited_[k] = first = longest_[k] < any ? k : first;
 }

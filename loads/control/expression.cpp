@@ -27,12 +27,15 @@ class FormulaBlock final : public ControlBlock, public CourseOfTime {
     for (std::size_t i = 0; i < formula_.names().size(); ++i) named[i] = formula_.names()[i] == "t" ? t : w[next++];
     v[0] = formula_(named);
   }
-  std::size_t courses() const override { return signals_.size() < formula_.names().size() ? 1 : 0; }
-  /// Of signals that are one: what they are multiplied with is seen as well.
+  std::size_t courses() const override { return signals_.size() < formula_.names().size() ? 2 : 0; }
+  /// Of signals that are neither zero nor one nor like one another, of either sign: what is multiplied with them, with
+  /// their difference or with a function of theirs is seen as well.
   void course(double t, std::span<double> values) const noexcept override {
-    std::array<double, Formula::most_names> ones{};
-    ones.fill(1);
-    output(t, ones, {}, values);
+    std::array<double, Formula::most_names> signals{};
+    for (std::size_t i = 0; i < signals.size(); ++i) signals[i] = 1.618 + 0.271 * static_cast<double>(i);
+    output(t, signals, {}, values.first(1));
+    for (double& signal : signals) signal = -signal;
+    output(t, signals, {}, values.last(1));
   }
 
  private:

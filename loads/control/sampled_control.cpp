@@ -44,7 +44,8 @@ class SampledControl : public BoundControl, public DiscretePart, public SampledP
     if (discrete[0] == 0) block().begin(t, w, z);
     discrete[0] = 1;
     const std::size_t p = outputs();
-    std::copy(queue.begin() + static_cast<std::ptrdiff_t>(p), queue.end(), queue.begin());
+    // At a sample's instant commands have moved up already, before what switches it on.
+    if (!crossing.begins) std::copy(queue.begin() + static_cast<std::ptrdiff_t>(p), queue.end(), queue.begin());
     block().sample(t, w, z, queue.last(p));
   }
   bool waits(std::span<const double> discrete) const override { return discrete[0] == 0; }

@@ -128,6 +128,55 @@ TEST(LongSteps, SeeAPulseInAFormulaOfTheTime) {
   }
 }
 
+// A wide pulse lies between the stages of a step as a short one does, a small one beside a great one, and one that a
+// difference of signals multiplies.
+TEST(LongSteps, SeePulsesOfAnyWidthAndHeightInAFormulaOfTheTime) {
+  const double root_pi = std::sqrt(std::numbers::pi);
+  const struct {
+    const char* formula;
+    double impulse;
+  } pulses[] = {{"exp(-((t - 6.1) / 0.14) ^ 2)", 0.14 * root_pi},
+                {"exp(-((t - 7.7) / 0.4) ^ 2)", 0.4 * root_pi},
+                {"1000 * exp(-((t - 2) / 0.05) ^ 2) + 10 * exp(-((t - 5) / 0.05) ^ 2)", 1010 * 0.05 * root_pi},
+                {"10 * exp(-((t - 5) / 0.05) ^ 2) * (other - slide.rate)", 5 * 0.05 * root_pi}};
+  for (const char* integrator : integrators_with_estimates) {
+    for (const auto& pulse : pulses) {
+      const bool measures = std::string(pulse.formula).find("other") != std::string::npos;
+      test::LoadedScene s(std::string("format: withy/1\ntime: {end: 10, output: 10}\nintegrator: ") + integrator +
+                          R"(
+bodies:
+  block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  heavy: {type: rigid, mass: 1e9, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}
+  other: {type: prismatic, axis: [1, 0, 0], parent: world, child: heavy}
+initial: {hinges: {other: {position: [0.5]}}}
+loads: {pulse: {type: expression, hinge: slide, value: ")" +
+                          std::string(pulse.formula) + "\"}}\n");
+      // Of the last one v' = 10 g(t) (0.5 − v).
+      const double expected = measures ? 0.5 * (1 - std::exp(-2 * pulse.impulse)) : pulse.impulse;
+      EXPECT_NEAR(s.rate(s.run().back(), "slide"), expected, 1e-4 * expected) << integrator << pulse.formula;
+    }
+  }
+}
+
+// A formula that changes all along is met wherever steps end: their errors rule, as without it.
+TEST(LongSteps, AreNotCutByARippleOfAFormulaThatHardlyActs) {
+  const auto steps = [](const std::string& value) {
+    test::LoadedScene s(
+        "format: withy/1\ntime: {end: 20, output: 20}\nintegrator: dop853\n"
+        "bodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+        "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}\n"
+        "initial: {hinges: {slide: {position: [1]}}}\n"
+        "loads: {spring: {type: expression, hinge: slide, value: " +
+        value + "}}\n");
+    s.run();
+    return s.summary.steps.accepted;
+  };
+  // Until they have seen it: 16 times its scale, and as many beside.
+  EXPECT_LE(steps("\"-slide + 1e-10 * sin(300 * t)\""), steps("\"-slide\"") + 48);
+}
+
 /// A rotor that turns freely at 50 rad/s, a place on it, and an event as it comes by.
 std::string rotor(const std::string& integrator) {
   return "format: withy/1\ntime: {end: 20, output: 20}\nintegrator: {name: " + integrator + R"(}

@@ -2,7 +2,9 @@
 /// When controllers take their samples: at one instant where times are apart by rounding alone, and once.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
+#include <string>
 
 #include "acted_run.hpp"
 #include "withy/core/simulation/session.hpp"
@@ -135,6 +137,26 @@ TEST(SampleInstants, a_run_and_a_session_that_end_at_one_have_taken_it) {
     EXPECT_EQ(run.summary.final.time, std::stod(tenths(k)));
     ASSERT_TRUE(session.advance(std::stod(tenths(k)), false).reached);
     EXPECT_NEAR(law.discrete(std::span(session.state().y)).back(), 0.1 * k, 1e-12) << tenths(k) << " s, a session";
+  }
+}
+
+// Its commands come by a delay of two samples after what they are made of: what is switched on a tenth of a millisecond
+// before the sample takes it all the same.
+TEST(SampleInstants, a_controller_switched_on_at_one_has_its_commands_as_one_switched_on_just_before) {
+  const auto moved = [](const std::string& on) {
+    const ActedRun run(
+        wheel("time: {output: 10, end: 1.95}\ninitial: {hinges: {axle: {position: 1}}}\n"
+              "loads: {servo: {type: pid, hinge: axle, proportional: 4, derivative: 2, sample: 0.1, "
+              "delay: 0.2}}\nevents:\n  off: {at: 0.03, do: {switch_off: servo}}\n  on: {at: " +
+              on + ", do: {switch_on: servo}}\n"));
+    return run.position("axle", run.summary.final);
+  };
+  for (const std::string sample : {"0.9", "1.0", "1.1", "1.2", "1.3"}) {
+    const double at_once = moved(sample);
+    EXPECT_GT(std::abs(at_once - 1), 0.05) << sample;
+    // At rest while it is off, so that both measure the same.
+    const std::string before = std::to_string(std::stod(sample) - 1e-4);
+    EXPECT_NEAR(at_once, moved(before), 1e-9) << sample;
   }
 }
 

@@ -59,6 +59,15 @@ TEST(SingularLoops, AreSeenWhereARunBeginsInOne) {
   EXPECT_THAT(summary.message, testing::HasSubstr("begins in a singular configuration"));
 }
 
+TEST(SingularLoops, AreSeenWhereARunBeginsInOneAtRest) {
+  std::string scene = scene_of({0, "180"}, {1, "90"});
+  for (std::size_t at; (at = scene.find(", rate: 2")) != std::string::npos;) scene.erase(at, 9);
+  const Made made(scene + "loads: {motor: {type: hinge-effort, hinge: m0, law: constant, value: 1}}\n");
+  const RunSummary summary = run(made, 0.4);
+  EXPECT_EQ(summary.status, RunStatus::singular);
+  EXPECT_THAT(summary.message, testing::HasSubstr("begins in a singular configuration"));
+}
+
 TEST(SingularLoops, AreNotSlotsThatTurnFarInAStep) {
   const Made made(R"(format: withy/1
 gravity: [0, 0, 0]
