@@ -28,6 +28,12 @@ std::vector<const Value*> texts_in(const Value* value) {
   return texts;
 }
 
+/// NAME of NAME.2.
+std::string without_number(const std::string& name) {
+  const std::size_t dot = name.find_last_not_of("0123456789");
+  return dot != std::string::npos && dot + 1 < name.size() && name[dot] == '.' ? name.substr(0, dot) : name;
+}
+
 struct NamesAlone {
   const Document& document;
   const SceneNames& names;
@@ -48,10 +54,11 @@ struct NamesAlone {
           name.place(), fmt::format("no {} {}{}", what, in_quotes(name.text()), checker.suggest(name.text(), known)));
   }
 
-  void need_keys(const char* what, const Value& map, const std::vector<std::string>& known) const {
+  /// \param parts whether NAME.2 may be a part of NAME: how many there are, its plugin says when it makes it
+  void need_keys(const char* what, const Value& map, const std::vector<std::string>& known, bool parts = false) const {
     if (known.empty()) return;
     for (const auto& [name, given] : map.members())
-      if (std::find(known.begin(), known.end(), name) == known.end())
+      if (std::find(known.begin(), known.end(), parts ? without_number(name) : name) == known.end())
         checker.key_error(given.place().path,
                           fmt::format("no {} {}{}", what, in_quotes(name), checker.suggest(name, known)));
   }
@@ -90,7 +97,7 @@ void check_start_names(const Document& document, const SceneNames& names, const 
   const Value& initial = part_of(document.root, "initial");
   const NamesAlone alone{document, names, checker};
   alone.need_keys("hinge", part_of(initial, "hinges"), names.hinges.names());
-  alone.need_keys("body", part_of(initial, "bodies"), names.bodies.names());
+  alone.need_keys("body", part_of(initial, "bodies"), names.bodies.names(), true);
   for (const Value* name : texts_in(initial.find("locked"))) alone.need("hinge", *name, names.hinges.names());
 }
 

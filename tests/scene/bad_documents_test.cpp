@@ -62,6 +62,15 @@ initial: {hinges: {shoulder: {rate: [0.1]}}}
   EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 7) << all;
 }
 
+// How many parts a body comes in its plugin says, when it makes it.
+TEST_F(BadDocuments, PartsOfABodyAreNoUnknownNamesWhereNoModelCanBeMade) {
+  const std::string all = problems(replaced(good_scene, "law: sine", "law: sinus") +
+                                       "\ninitial: {bodies: {boom.2: {modes: [0.1]}, bom.2: {modes: [0.1]}}}\n",
+                                   registry);
+  EXPECT_THAT(all, testing::Not(testing::HasSubstr("boom.2\"")));
+  EXPECT_THAT(all, testing::HasSubstr("no body \"bom.2\""));
+}
+
 TEST_F(BadDocuments, WhatRestsOnAPartThatIsReportedIsNotReportedToo) {
   const std::string parts = R"(
 constraints:
