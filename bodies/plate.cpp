@@ -2,7 +2,8 @@
 /// The plate: rectangular, thin (Kirchhoff), in the x-y plane of the body frame, clamped along x = 0, 0 ≤ x ≤ length,
 /// |y| ≤ width/2. Its deflection w along z is a sum of Ritz modes, eigenvectors of
 ///   ½ D ∫ w,xx² + w,yy² + 2ν w,xx w,yy + 2 (1−ν) w,xy²   and   ½ ∫ m w²
-/// among products of clamped-free beam functions of x and free-free ones of y with 1 and y.
+/// among products of polynomials, of x clamped at the edge and of y any. Functions of beams would do, too, but have no
+/// curvature at free edges, where a plate has ν times that of its other direction: their sums converge slowly.
 ///
 /// No bending of a plate but a developable one leaves all lengths in its plane as they are. As in H. H. Yoo and J.
 /// Chung (J. Sound Vib. 239, 2001, 123–137), the lines y = const from the clamped edge, and x = const from the middle
@@ -18,13 +19,13 @@
 #include <charconv>
 #include <cmath>
 
-#include "beam_quadrature.hpp"
 #include "damping.hpp"
 #include "equal_particles.hpp"
 #include "magnitude.hpp"
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/core/plugin/registry.hpp"
+#include "withy/core/shape/panel_quadrature.hpp"
 
 namespace withy {
 namespace {
@@ -41,9 +42,16 @@ struct Sheet {
   BodyDamping damping;
 };
 
+/// How many functions there are beside as many as modes.
+constexpr double usual_along = 6, usual_across = 4;
+
 /// Functions of one coordinate and their derivatives, each a row.
 struct Line {
   RowVectorXd value, slope, curvature;
+};
+/// The same at the nodes of a quadrature, a row each, times the roots of its weights: their products are integrals.
+struct Lines {
+  MatrixXd value, slope, curvature;
 };
 
 class Plate final : public Body {
@@ -53,8 +61,8 @@ class Plate final : public Body {
       : sheet_(sheet),
         along_(std::move(along)),
         across_(std::move(across)),
-        x_(sheet.length, along_->wave_number()),
-        y_(sheet.width, across_ == nullptr ? 0 : across_->wave_number(), {sheet.width / 2}) {
+        x_(sheet.length, 1, exact_order(along_->count() + 1)),
+        y_(sheet.width, 1, exact_order(across_ == nullptr ? 1 : across_->count() + 1)) {
     choose_modes(modes);
     make_particles();
   }
@@ -139,38 +147,59 @@ class Plate final : public Body {
   /// Quadrature coordinate of y runs from 0.
   double y_at(std::size_t j) const { return y_.nodes()[j] - sheet_.width / 2; }
 
-  void choose_modes(Eigen::Index modes) {
-    const Eigen::Index n = products(*along_, across_.get());
-    MatrixXd M = MatrixXd::Zero(n, n), K = MatrixXd::Zero(n, n);
-    std::vector<Line> g;
-    for (std::size_t j = 0; j < y_.nodes().size(); ++j) g.push_back(across(y_at(j)));
-    const double nu = sheet_.poisson_ratio;
-    for (std::size_t i = 0; i < x_.nodes().size(); ++i) {
-      const Line f = along(x_.nodes()[i]);
-      MatrixXd w(g.size(), n), xx(g.size(), n), yy(g.size(), n), xy(g.size(), n);
-      for (std::size_t j = 0; j < g.size(); ++j) {
-        const auto row = static_cast<Eigen::Index>(j);
-        const double root = std::sqrt(x_.weights()[i] * y_.weights()[j]);
-        w.row(row) = root * product(f.value, g[j].value);
-        xx.row(row) = root * product(f.curvature, g[j].value);
-        yy.row(row) = root * product(f.value, g[j].curvature);
-        xy.row(row) = root * product(f.slope, g[j].slope);
-      }
-      M += sheet_.mass_per_area * w.transpose() * w;
-      const MatrixXd mixed = xx.transpose() * yy;
-      K += sheet_.stiffness * (xx.transpose() * xx + yy.transpose() * yy + nu * (mixed + mixed.transpose()) +
-                               2 * (1 - nu) * xy.transpose() * xy);
+  /// Gauss nodes that integrate the product of four functions, polynomials of this degree.
+  static Eigen::Index exact_order(std::size_t degree) { return static_cast<Eigen::Index>(2 * degree + 1); }
+
+  template <class At>
+  static Lines at_nodes(const PanelQuadrature& quadrature, Eigen::Index functions, const At& at) {
+    const auto nodes = static_cast<Eigen::Index>(quadrature.nodes().size());
+    Lines lines{MatrixXd(nodes, functions), MatrixXd(nodes, functions), MatrixXd(nodes, functions)};
+    for (Eigen::Index i = 0; i < nodes; ++i) {
+      const auto node = static_cast<std::size_t>(i);
+      const double root = std::sqrt(quadrature.weights()[node]);
+      const Line line = at(quadrature.nodes()[node]);
+      lines.value.row(i) = root * line.value;
+      lines.slope.row(i) = root * line.slope;
+      lines.curvature.row(i) = root * line.curvature;
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(K, M);
+    return lines;
+  }
+  /// Integrals over the plate, of products of functions of x and of y.
+  static MatrixXd product(const MatrixXd& a, const MatrixXd& b) {
+    MatrixXd p(a.rows() * b.rows(), a.cols() * b.cols());
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      for (Eigen::Index j = 0; j < a.cols(); ++j) p.block(i * b.rows(), j * b.cols(), b.rows(), b.cols()) = a(i, j) * b;
+    }
+    return p;
+  }
+
+  void choose_modes(Eigen::Index modes) {
+    const auto of_x = static_cast<Eigen::Index>(along_->count());
+    const Lines f = at_nodes(x_, of_x, [this](double x) { return along(x); });
+    const Lines g = at_nodes(y_, products(*along_, across_.get()) / of_x,
+                             [this](double y) { return across(y - sheet_.width / 2); });
+    const auto over = [](const MatrixXd& a, const MatrixXd& b) { return MatrixXd(a.transpose() * b); };
+    const MatrixXd ff = over(f.value, f.value), gg = over(g.value, g.value);
+    const MatrixXd mixed = product(over(f.curvature, f.value), over(g.value, g.curvature));
+    const double nu = sheet_.poisson_ratio;
+    const MatrixXd M = sheet_.mass_per_area * product(ff, gg);
+    const MatrixXd K =
+        sheet_.stiffness *
+        (product(over(f.curvature, f.curvature), gg) + product(ff, over(g.curvature, g.curvature)) +
+         nu * (mixed + mixed.transpose()) + 2 * (1 - nu) * product(over(f.slope, f.slope), over(g.slope, g.slope)));
+    // M x = ω⁻² K x: the lowest are the greatest there, and rounding is small beside them.
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(M, K);
+    const VectorXd softness = eigen.eigenvalues().tail(modes).reverse();
     const double mass = sheet_.mass_per_area * sheet_.length * sheet_.width;
-    modes_ = std::sqrt(mass) * eigen.eigenvectors().leftCols(modes);  // modal masses are the plate's mass
+    const VectorXd size = (mass / softness.array()).sqrt();  // modal masses are the plate's mass
+    modes_ = eigen.eigenvectors().rightCols(modes).rowwise().reverse() * size.asDiagonal();
     // Up at the left corner, which no mode leaves at rest.
     const RowVectorXd corner = product(along(sheet_.length).value, across(sheet_.width / 2).value) * modes_;
     for (Eigen::Index k = 0; k < modes; ++k) {
       if (corner[k] < 0) modes_.col(k) *= -1;
       shape_.mode_names.push_back(fmt::format("mode[{}]", k + 1));
     }
-    const VectorXd stiffness = mass * eigen.eigenvalues().head(modes);
+    const VectorXd stiffness = mass * softness.cwiseInverse();
     shape_.stiffness = stiffness.asDiagonal();
     shape_.damping = sheet_.damping.matrix(shape_.stiffness, mass * MatrixXd::Identity(modes, modes));
     shape_.length = sheet_.length;
@@ -273,7 +302,7 @@ class Plate final : public Body {
 
   Sheet sheet_;
   std::unique_ptr<ShapeFunctions> along_, across_;
-  BeamQuadrature x_, y_;
+  PanelQuadrature x_, y_;
   MatrixXd modes_;  ///< columns: coefficients of the products
   ModalShape shape_;
 };
@@ -295,18 +324,24 @@ std::unique_ptr<Body> make_plate(const Value& p, const MakeContext& context) {
       !held("the stiffness along", {stiff, length(-3), width(1)}, told) ||
       !held("the stiffness across", {stiff, length(1), width(-3)}, told))
     return nullptr;
-  const auto functions = [&](const char* family, const char* count, double length) {
-    return make_shape_functions(Value(std::string(family), p.at(count).place()), p.at(count),
+  const auto modes = static_cast<Eigen::Index>(p.count_at("modes"));
+  // More modes are nearer to the truth by each of them, too: what is wrong with few functions shows where modes are
+  // added.
+  const auto count = [&](const char* key, double beside) {
+    const Value* const given = p.find(key);
+    return given != nullptr ? *given : Value(static_cast<double>(modes) + beside, p.at("modes").place());
+  };
+  const auto functions = [&](const Value& count, double length) {
+    return make_shape_functions(Value(std::string("orthogonal-polynomials"), count.place()), count,
                                 {BeamData::Strain::bending, length, sheet.mass_per_area, sheet.stiffness}, context);
   };
-  auto along = functions("clamped-free", "functions_along", sheet.length);
+  auto along = functions(count("functions_along", usual_along), sheet.length);
   if (along == nullptr) return nullptr;
   std::unique_ptr<ShapeFunctions> across;
-  if (p.count_at("functions_across") > 0) {
-    across = functions("free-free", "functions_across", sheet.width);
+  if (const Value given = count("functions_across", usual_across); given.number() > 0) {
+    across = functions(given, sheet.width);
     if (across == nullptr) return nullptr;
   }
-  const auto modes = static_cast<Eigen::Index>(p.count_at("modes"));
   if (const Eigen::Index most = Plate::products(*along, across.get()); modes > most) {
     context.diagnostics.error(
         p.at("modes").place(),
@@ -328,14 +363,15 @@ void enroll_plate(Enrollment& enrollment) {
       number("stiffness", "N m", "bending stiffness D = E h^3 / (12 (1 - nu^2))").above(0),
       number("poisson_ratio", "1", "Poisson's ratio nu").above(-1).most(0.5).otherwise(0.3),
       integer("modes", "number of modes, the lowest").least(0).most(12).otherwise(3.0).as(ParameterSpec::Role::modes),
-      integer("functions_along", "number of clamped-free functions of x that modes are made of")
+      integer("functions_along", "number of polynomials of x that modes are made of, modes + 6 if left out")
           .least(1)
-          .most(12)
-          .otherwise(6.0),
-      integer("functions_across", "number of free-free functions of y that modes are made of, beside 1 and y")
+          .most(24)
+          .optional(),
+      integer("functions_across",
+              "number of polynomials of y that modes are made of, beside 1 and y, modes + 4 if left out")
           .least(0)
-          .most(12)
-          .otherwise(4.0)};
+          .most(24)
+          .optional()};
   for (ParameterSpec& spec : damping_parameters()) specs.push_back(std::move(spec));
   enrollment.add<Body>({.id = "plate",
                         .summary = "Thin rectangular plate in the x-y plane, clamped along x = 0, bending along z",
