@@ -26,7 +26,7 @@ struct Simulation::Parts {
         prepared(with_one_formulation(scene)),
         session(prepared->model(), *prepared->equations, *prepared->scene.integrator, prepared->scene.initial,
                 {prepared->scene.deflection_limit, prepared->scene.events, std::move(interrupted),
-                 study::has_own_energy(prepared->scene)}),
+                 study::has_own_energy(prepared->scene), span_of(prepared->scene)}),
         table(prepared->model(), *prepared->equations, prepared->scene.outputs) {
     for (std::size_t l = 0; l < prepared->model().loads().size(); ++l) {
       const LoadNode& load = prepared->model().loads()[l];

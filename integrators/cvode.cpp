@@ -18,6 +18,7 @@
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/discrete_states.hpp"
 #include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/just_before.hpp"
 
 namespace withy {
 namespace {
@@ -89,7 +90,7 @@ class CvodeStepper final : public Stepper {
 
   StepResult step(double t_limit) override {
     if (!(t_limit > state_.time)) return {};
-    latest_ = std::nextafter(t_limit, state_.time);
+    latest_ = just_before(t_limit, state_.time);
     failed_ = {};
     const double rounding = std::numeric_limits<double>::epsilon() * std::max(std::abs(state_.time), std::abs(t_limit));
     if (t_limit - state_.time <= 100 * rounding) return hop(t_limit);

@@ -15,6 +15,7 @@
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/discrete_states.hpp"
 #include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/just_before.hpp"
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/plugin/staged_steps.hpp"
 
@@ -122,7 +123,7 @@ class OneStep : public Stepper, public ClosingStepper {
   /// To be called first in a step: sets the limit of stage times and finds the slope at the start where it is unknown.
   StepResult begin(double t_limit) {
     if (apart_) return {StepResult::Outcome::singular};
-    if (t_limit != limit_) latest_ = std::nextafter(limit_ = t_limit, state_.time);
+    if (t_limit != limit_) latest_ = just_before(limit_ = t_limit, state_.time);
     if (slope_known_) return {};
     const Evaluation e = evaluate(state_.time, next_ = y(), slope_);
     if (!e.ok() || !finite(slope_)) return failure(e);

@@ -68,6 +68,8 @@ Scene parse_scene(std::string_view text, const std::string& file, Registry& regi
 /// The time [s] at which a run of the scene ends. \throws SceneError where neither the scene nor a load says so; such
 /// a scene can be evaluated, but not run.
 double end_of_run(const Scene& scene);
+/// From its initial time to that [s]; 0 where there is no end.
+double span_of(const Scene& scene);
 
 /// Reads a state (JSON or YAML, form as under `initial` of a scene) for a model: what is not named is as in `start`.
 /// \throws SceneError

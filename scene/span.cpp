@@ -72,6 +72,8 @@ void set_span(const Model& model, const Document& document, const Checker& check
   }
 }
 
+double span_of(const Scene& scene) { return scene.end ? *scene.end - scene.initial.time : 0; }
+
 double end_of_run(const Scene& scene) {
   if (scene.end) return *scene.end;
   const Place& time = scene.source.at("time").place();

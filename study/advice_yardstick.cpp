@@ -115,8 +115,18 @@ ReferenceFound YardstickSearch::search(const ReferenceGoal& goal) {
 std::vector<Reference> YardstickSearch::find() {
   ReferenceGoal goal = this->goal();
   const bool modal = candidates_.modes.back() > 0;
+  const auto better_is_offered = [&](Point point) {
+    for (const std::string& formulation : reference_formulations(evaluator_.registry())) {
+      if (formulation == point.formulation) return false;
+      Point richer = point;
+      richer.formulation = formulation;
+      if (!evaluator_.model(richer).refused()) return true;
+    }
+    return false;
+  };
   const auto bent_too_far = [&](const Reference& r) {
-    return r.third_order > policy::last_reference_use * accuracy_.share.value_or(policy::no_accuracy);
+    return !better_is_offered(r.point) &&
+           r.third_order > policy::last_reference_use * accuracy_.share.value_or(policy::no_accuracy);
   };
   goal.enough = [&](const Reference& r) {
     if (bent_too_far(r)) return true;  // more modes would not help
@@ -229,7 +239,9 @@ void YardstickSearch::explain_bending(const Reference& r) {
   const bool askable = use * accuracy_.share.value_or(0) < policy::no_accuracy;
   advice_.trouble = fmt::format(
       "no reference is exact enough to measure against: {} are beyond what {} is "
-      "good for, about {:.2g} % of the range of deflections, and no kinematics is offered that is better. What to do: "
+      "good for: over a run that may come to {:.2g} % of the range of deflections, and no kinematics is offered that "
+      "is "
+      "better. What to do: "
       "{}make the "
       "body a beam, which has 'exact', or one in segments; or ask for a shorter time (--set time.end=...)",
       bend_text(r.bend), r.point.formulation, 100 * r.third_order,

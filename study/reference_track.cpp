@@ -197,7 +197,7 @@ ReferenceTrack ReferenceTracker::beside_least() {
     const bool good = run(track, small_, true);
     if (!good) track.beside.clear();
     seen_ = std::max(seen_, track.bend.size());
-    track.third_order = third_order_share(track.bend);
+    track.third_order = third_order_over_a_run(track.bend);
     return good;
   };
   // Where only the correction failed, the reference is made in its own rung.
@@ -209,7 +209,7 @@ ReferenceTrack ReferenceTracker::beside_least() {
 ReferenceTrack ReferenceTracker::highest() {
   ReferenceTrack track = blank();
   if (!(seen_ > small_) && (run(track, small_, false) || !track.problem.empty())) {
-    track.third_order = third_order_share(track.bend);
+    track.third_order = third_order_over_a_run(track.bend);
     return track;
   }
   track = blank();

@@ -226,11 +226,10 @@ void judge(RungPlan& plan, const ReferenceTrack& reference, const Prepared& prep
     std::string bend = bend_text(reference.bend);
     bend.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(bend.front())));
     add(
-        fmt::format("{} are beyond what {} is good for, about {:.2g} % of the range of deflections, and no kinematics "
-                    "is offered that is better.",
+        fmt::format("{} are beyond what {} is good for: over a run that may come to {:.2g} % of the range of "
+                    "deflections, and no kinematics is offered that is better.",
                     bend, highest, 100 * reference.third_order));
-  }
-  if (plan.use > 1)
+  } else if (plan.use > 1)
     add(fmt::format("The accuracy asked is not held: '{}' is off by {:.2g} times as much.", plan.worst, plan.use));
 }
 
@@ -260,7 +259,8 @@ RungPlan plan_rungs(const Prepared& prepared, Registry& registry, double accurac
   }
   plan.integrator = reference.integrator;
   plan.windows = reference.windows.size();
-  plan.use = planner->use(planner->errors());
+  // What no rung has is part of what the run may be off by.
+  plan.use = planner->use(planner->errors()) + reference.third_order / accuracy;
   plan.worst = planner->worst();
   const double until = plan.stretches.empty() ? start : plan.stretches.back().stretch.end;
   plan.estimate = {prepared.rungs[reference.rung].name, named(outputs, planner->errors(), until), end,

@@ -9,6 +9,11 @@ namespace withy::study {
 
 double third_order_share(const Bend& bend) { return bend.size() * bend.size(); }
 
+double third_order_over_a_run(const Bend& bend) {
+  constexpr double growth = 10;
+  return growth * third_order_share(bend);
+}
+
 std::string bend_text(const Bend& bend) {
   if (bend.bent() && bend.by_angle()) return fmt::format("sections of a bent body that turn by {:.2g} rad", bend.angle);
   return fmt::format("deflections of {:.2g} of a body's length", bend.deflection);

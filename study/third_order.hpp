@@ -15,6 +15,9 @@ namespace withy::study {
 /// length)² or, where that is more, the square of half the angle that the section there has turned by (Bend). The
 /// product of a twist twice and a deflection is of third order as that of three deflections is.
 double third_order_share(const Bend& bend);
+/// What they may come to over a run: ten times that share. Where `exact` can tell, most motions are off by less and few
+/// by more, by what runs apart in long vibrations and near buckling (table in docs/validity.md).
+double third_order_over_a_run(const Bend& bend);
 /// "deflections of 0.11 of a body's length", "sections of a bent body that turn by 1.2 rad".
 std::string bend_text(const Bend& bend);
 
@@ -28,7 +31,7 @@ class ThirdOrder {
   void look(const State& state);
   /// Where it was most so far.
   [[nodiscard]] const Bend& bend() const { return bend_; }
-  [[nodiscard]] double share() const { return third_order_share(bend_); }
+  [[nodiscard]] double over_a_run() const { return third_order_over_a_run(bend_); }
 
  private:
   const Model& model_;

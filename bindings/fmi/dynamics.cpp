@@ -8,6 +8,7 @@
 #include "withy/core/model/held_numbers.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/plugin/just_before.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/tangents/refined_difference.hpp"
 
@@ -149,7 +150,7 @@ const State& Dynamics::seen() {
   if (!seen_is_now_) {
     seen_ = state_;
     if (quaternions_) equations_.normalize(seen_.y);
-    seen_.time = std::min(state_.time, std::nextafter(jump_, -infinity));
+    seen_.time = std::min(state_.time, just_before(jump_, -infinity));
     seen_is_now_ = true;
   }
   return seen_;

@@ -246,9 +246,9 @@ void Instance::make_session() {
     mode_ = Mode::step;
     return early_.has_value();
   };
-  session_ = std::make_unique<Session>(
-      p.model(), *p.equations, *p.scene.integrator, dynamics_->start(),
-      SessionOptions{p.scene.deflection_limit, p.scene.events, between, study::has_own_energy(p.scene)});
+  session_ = std::make_unique<Session>(p.model(), *p.equations, *p.scene.integrator, dynamics_->start(),
+                                       SessionOptions{p.scene.deflection_limit, p.scene.events, between,
+                                                      study::has_own_energy(p.scene), span_of(p.scene)});
 }
 
 const Variable& Instance::variable(std::uint32_t reference) const {

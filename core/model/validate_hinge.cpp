@@ -157,6 +157,23 @@ std::string kernel_fault(const Hinge& hinge, const HingeKernel& kernel, const Nu
   return apart <= motion_rounding ? std::string() : "it does not move as the kernel that it says it is";
 }
 
+/// Where there are as many, rates are the derivatives of coordinates, one by one: what the engine copies, and a load or
+/// a limit on one of them takes for its rate.
+std::string derivatives_fault(const Hinge& hinge, const Numbers& x, const Numbers& rates) {
+  if (x.size() != rates.size()) return {};
+  Numbers derivatives(x.size());
+  hinge.derivatives(x, rates, derivatives);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (std::abs(derivatives[i] - rates[i]) <= motion_rounding) continue;
+    std::ostringstream text;
+    text << "it has as many rates as coordinates, and the derivative of coordinate " << i + 1 << " is "
+         << derivatives[i] << " where rate " << i + 1 << " is " << rates[i]
+         << "; need rates that are the derivatives, or more coordinates, as a quaternion has";
+    return text.str();
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string find_fault(const Hinge& hinge) {
@@ -179,6 +196,7 @@ std::string find_fault(const Hinge& hinge) {
     const Numbers x = displaced(hinge, reference, rates, distance);
     if (kernel)
       if (std::string fault = kernel_fault(hinge, *kernel, x, rates); !fault.empty()) return fault;
+    if (std::string fault = derivatives_fault(hinge, x, rates); !fault.empty()) return fault;
     if (std::string fault = rates_fault(hinge, x, rates); !fault.empty()) return fault;
   }
   return {};

@@ -1,3 +1,4 @@
+#include "withy/core/plugin/just_before.hpp"
 #include "withy/core/simulation/coarse_steps.hpp"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ class SemiImplicitStepper final : public Stepper {
     combine(known_ ? h - ahead * h : 0, slope_, ahead * h, first_, stage_);
     combine(0, slope_, (1 - gamma) * h, first_, base_);
     // What jumps at the end belongs to the step after.
-    if (const StepResult r = evaluate(std::nextafter(t_new, t), gamma * h, slope_);
+    if (const StepResult r = evaluate(just_before(t_new, t), gamma * h, slope_);
         r.outcome != StepResult::Outcome::ok)
       return r;
     before_ = state_;

@@ -25,8 +25,8 @@ class LoopWatch {
   /// time up to which it is kept for sure; that of `after` where it is all the way
   double kept_until(const Stepper& stepper, const State& before, const State& after, std::size_t halvings);
   [[nodiscard]] std::size_t rank_at(const State& state);
-  /// A little further on along the rates of the start, or its accelerations where it is at rest; 0 where it stays there,
-  /// or there is no closed state.
+  /// A little further on along the rates of the start, or its accelerations where it is at rest; 0 where it stays
+  /// there, or there is no closed state.
   [[nodiscard]] std::size_t rank_beside(const EquationsOfMotion& equations, const State& initial);
 
   const ClosedLoops* loops_;

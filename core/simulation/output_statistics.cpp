@@ -1,3 +1,4 @@
+#include "withy/core/plugin/just_before.hpp"
 #include "withy/core/simulation/output_statistics.hpp"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ void StatisticsWatch::read(const State& state, std::vector<double>& values) {
 void StatisticsWatch::read_end(const State& state, std::vector<double>& values) {
   if (!std::binary_search(jumps_.begin(), jumps_.end(), state.time)) return read(state, values);
   between_ = state;
-  between_.time = std::nextafter(state.time, from_);
+  between_.time = just_before(state.time, from_);
   read(between_, values);
 }
 

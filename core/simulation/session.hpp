@@ -20,6 +20,7 @@ struct SessionOptions {
   std::vector<RunEvent> events;       ///< looked for on the dense output
   std::function<bool()> interrupted;  ///< asked between integration steps
   bool own_energy = false;            ///< as RunOptions::own_energy
+  double looks_over = 0;              ///< as SteppingOptions::looks_over; 0: formulas are not looked at ahead
 };
 
 /// How a call of Session::advance ended.

@@ -28,7 +28,11 @@ Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::
       zeros_(model, options.events, stepper_->state(), options.end, !has_given_steps(*stepper_)),
       actions_(options.actions),
       times_(stepper_->state().time, options.output, options.end),
+      model_(model),
       courses_(model, stepper_->state().time, has_given_steps(*stepper_) ? stepper_->state().time : options.end),
+      start_(stepper_->state().time),
+      looks_over_(has_given_steps(*stepper_) || !TimeCourses::are_in(model) ? 0 : options.looks_over),
+      looked_until_(looks_over_ > 0 ? start_ : std::numeric_limits<double>::infinity()),
       end_(options.end),
       sample_(stepper_->state()) {
   if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr &&
@@ -137,6 +141,17 @@ bool Stepping::changes_the_run(const Zero& zero) const {
   return actions_ != nullptr && !zeros_.switching(zero.function) && actions_->acts(zeros_.index(zero));
 }
 
+/// Looks at formulas from the present time on, where they have been looked at up to there: wherever a simulation has
+/// gone on from, at the same times.
+void Stepping::look_ahead() {
+  if (state().time < looked_until_) return;
+  double count = std::floor((state().time - start_) / looks_over_);
+  const auto end_of = [&](double k) { return start_ + (k + 1) * looks_over_; };
+  while (end_of(count) <= state().time) ++count;
+  courses_ = TimeCourses(model_, start_ + count * looks_over_, end_of(count));
+  looked_until_ = end_of(count);
+}
+
 /// Whether no load has failed; the stepping has ended else.
 bool Stepping::sound(const State& state) {
   ended_.reason = observer_->failure(clocks_, state);
@@ -168,8 +183,10 @@ bool Stepping::to(double limit, bool watching) {
       if (!observer_->before_step(*stepper_)) return end(Cause::stopped);
       if (!zeros_.empty()) before_ = state();
     }
+    look_ahead();
     const std::size_t made = stepper_->statistics().evaluations;
-    ended_.step = stepper_->step(std::min({limit, courses_.latest_end(state().time), end_beyond_kink()}));
+    ended_.step =
+        stepper_->step(std::min({limit, looked_until_, courses_.latest_end(state().time), end_beyond_kink()}));
     step_evaluations_ += stepper_->statistics().evaluations - made;
     check_arithmetic();
     if (ended_.step.outcome != StepResult::Outcome::ok) return sound(state()) && end(Cause::failed);
@@ -285,6 +302,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
 void Stepping::resume(const State& state, std::span<const double> memory) {
   if (const std::string why = clocks_.refusal(state); !why.empty()) throw std::invalid_argument(why);
   clocks_.forget();
+  if (looks_over_ > 0) looked_until_ = state.time;
   stepper_->resume(state, memory);
   clocks_.go_on_after(state.time);
 }

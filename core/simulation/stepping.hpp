@@ -70,6 +70,9 @@ struct SteppingOptions {
   std::span<const RunEvent> events = {};    ///< looked for on the dense output; of `actions` those that they watch
   std::span<const double> hand_overs = {};  ///< times [s] at which the equations change; increasing
   EventActions* actions = nullptr;          ///< what the scene's events do; null: nothing
+  /// Over which formulas of the time are looked at at once [s], from the start on and again and again; up to the end,
+  /// if it is known: 0.
+  double looks_over = 0;
 };
 
 /// One integration under way.
@@ -113,6 +116,7 @@ class Stepping {
   bool cut_at(double time, std::size_t noted);
   void note(const Zero& zero);
   bool renew_clocks();
+  void look_ahead();
   bool sound(const State& state);
   bool end(SteppingEnd::Cause cause);
   [[nodiscard]] double coincidence(const Zero& zero) const;
@@ -126,7 +130,9 @@ class Stepping {
   ZeroWatch zeros_;
   EventActions* actions_;
   OutputTimes times_;
+  const Model& model_;
   TimeCourses courses_;  ///< nothing of a stepper whose steps are given
+  double start_, looks_over_, looked_until_;
   double end_;
   State sample_;
   State before_;    ///< where the last step began; kept only where zeros are watched

@@ -121,6 +121,8 @@ TimeCourses::TimeCourses(const Model& model, double start, double end) : start_(
   for (std::size_t k = intervals, first = intervals; k-- > 0;) limited_[k] = first = longest_[k] < any ? k : first;
 }
 
+bool TimeCourses::are_in(const Model& model) { return !courses_of(model).empty(); }
+
 double TimeCourses::latest_end(double t) const {
   double latest = any;
   if (longest_.empty()) return latest;

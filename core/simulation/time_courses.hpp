@@ -17,6 +17,8 @@ class TimeCourses {
  public:
   /// \param start, end of the run [s]; without an end nothing is known
   TimeCourses(const Model& model, double start, double end);
+  /// Whether anything of a model follows the time by a formula.
+  static bool are_in(const Model& model);
   /// The latest end of a step from t [s], later than t; infinite where nothing limits it.
   [[nodiscard]] double latest_end(double t) const;
 

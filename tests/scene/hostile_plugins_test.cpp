@@ -98,7 +98,7 @@ class OnSine final : public Hinge {
   }
   void derivatives(std::span<const double>, std::span<const double> rates,
                    std::span<double> x_dot) const noexcept override {
-    x_dot[0] = rates[0];
+    x_dot[0] = fault_ == "derivatives" ? 2 * rates[0] : rates[0];
   }
   void normalize(std::span<double>) const noexcept override {}
   std::optional<HingeKernel> kernel() const override {
@@ -418,6 +418,10 @@ TEST_F(HostilePlugins, WhoseHingesDoNotMoveAsTheySayAreReported) {
   EXPECT_THAT(hinge("H"), testing::StartsWith(made + "column 1 of H is (0 0 0 1 1.01 0) in the axes of M"));
   EXPECT_THAT(hinge("bias"), testing::StartsWith(made + "the bias is (0 0 0 0 0 0) in the axes of M"));
   EXPECT_EQ(hinge("kernel"), made + "it does not move as the kernel that it says it is");
+  EXPECT_EQ(hinge("derivatives"), made +
+                                      "it has as many rates as coordinates, and the derivative of coordinate 1 is 2 "
+                                      "where rate 1 is 1; need rates that are the derivatives, or more coordinates, "
+                                      "as a quaternion has");
   EXPECT_EQ(hinge("size"), made + "it has 1 coordinates and 1 rates, the kernel that it says it is has 7 and 6");
 }
 

@@ -10,6 +10,7 @@
 
 #include "withy/core/simulation/output_statistics.hpp"
 #include "withy/core/simulation/run_times.hpp"
+#include "withy/core/simulation/session.hpp"
 #include "withy/tests/loads/scene_run.hpp"
 
 namespace withy {
@@ -158,6 +159,32 @@ loads: {pulse: {type: expression, hinge: slide, value: ")" +
       EXPECT_NEAR(s.rate(s.run().back(), "slide"), expected, 1e-4 * expected) << integrator << pulse.formula;
     }
   }
+}
+
+// A host steps as far as it likes: formulas are looked at over the span of the scene, wherever it has gone on from.
+TEST(LongSteps, OfAHostSeeAPulseInAFormulaOfTheTime) {
+  test::LoadedScene s(
+      "format: withy/1\ntime: {end: 10}\n"
+      "bodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+      "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}\n"
+      "loads: {pulse: {type: expression, hinge: slide, value: "
+      "\"exp(-((t - 5) / 0.05) ^ 2) + exp(-((t - 17) / 0.05) ^ 2)\"}}\n");
+  const auto session = [&] {
+    SessionOptions options;
+    options.looks_over = span_of(s.scene);
+    return Session(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options);
+  };
+  const double impulse = 0.05 * std::sqrt(std::numbers::pi);
+  Session whole = session();
+  ASSERT_TRUE(whole.advance(10, false).reached);
+  EXPECT_NEAR(s.rate(whole.state(), "slide"), impulse, 1e-4 * impulse);
+  const Checkpoint there = whole.snapshot();
+  ASSERT_TRUE(whole.advance(25, false).reached);
+  EXPECT_NEAR(s.rate(whole.state(), "slide"), 2 * impulse, 1e-4 * impulse);
+  Session rest = session();
+  rest.restore(there);
+  ASSERT_TRUE(rest.advance(25, false).reached);
+  EXPECT_EQ(rest.state().y, whole.state().y);
 }
 
 // A formula that changes all along is met wherever steps end: their errors rule, as without it.

@@ -70,5 +70,23 @@ TEST(Restarts, need_what_all_loads_hold_as_it_was_written) {
   EXPECT_THAT(refusal_of("initial: {held: 3}\n"), HasSubstr("need a map of names of loads that hold numbers"));
 }
 
+// Steps see what is until then at their end; just before zero there are but numbers that count as zero.
+TEST(Restarts, before_zero_meet_what_jumps_at_zero_there) {
+  for (const std::string integrator : {"{name: rk4, step: 0.05}", "{name: generalized-alpha, step: 0.05}", "dopri5",
+                                       "dop853", "radau", "cvode", "imex"}) {
+    const auto rate = [&](const std::string& begin, const std::string& jump, const std::string& end) {
+      const ActedRun run(
+          "format: withy/1\nbodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+          "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}\n"
+          "loads: {push: {type: hinge-effort, hinge: slide, law: steps, table: [[" +
+          jump + ", 1]]}}\ninitial: {time: " + begin + "}\ntime: {output: 10, end: " + end +
+          "}\nintegrator: " + integrator + "\n");
+      return run.rate("slide");
+    };
+    EXPECT_NEAR(rate("-0.25", "0", "0.5"), 0.5, 1e-9) << integrator;
+    EXPECT_NEAR(rate("0", "0.25", "0.75"), 0.5, 1e-9) << integrator;
+  }
+}
+
 }  // namespace
 }  // namespace withy

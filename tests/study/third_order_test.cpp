@@ -41,7 +41,7 @@ hinges: {r: {type: weld, parent: world, child: b}}
     all.look(prepared.scene.initial);
     all.look(state);
     all.look(prepared.scene.initial);
-    return all.share();
+    return third_order_share(all.bend());
   }
   [[nodiscard]] double displaced(std::size_t coordinate) const {
     std::vector<double> y = prepared.scene.initial.y;

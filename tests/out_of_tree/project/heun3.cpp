@@ -7,6 +7,7 @@
 #include <withy/core/plugin/closed_loops.hpp>
 #include <withy/core/plugin/discrete_states.hpp>
 #include <withy/core/plugin/integrator.hpp>
+#include <withy/core/plugin/just_before.hpp>
 #include <withy/core/plugin/memory.hpp>
 
 #include "laws.hpp"
@@ -34,7 +35,7 @@ class Heun3Stepper final : public withy::Stepper {
     const double steps = std::ceil((t_limit - t) / longest_ * (1 - 1e-9));
     const double end = steps > 1 ? t + (t_limit - t) / steps : t_limit, h = end - t;
     if (!(h > 0)) return {Outcome::step_underflow};
-    latest_ = std::nextafter(t_limit, t);  // what jumps at the limit belongs to the steps after it
+    latest_ = withy::just_before(t_limit, t);  // what jumps at the limit belongs to the steps after it
     if ((slope_known_ || evaluate(t, stage_ = y(), slope_)) &&
         evaluate(t + h / 3, stage_ = y() + h / 3 * slope_, k2_) &&
         evaluate(t + 2 * h / 3, stage_ = y() + 2 * h / 3 * k2_, k3_) &&
