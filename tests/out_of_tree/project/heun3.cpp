@@ -14,7 +14,6 @@
 
 namespace example {
 namespace {
-
 using Array = Eigen::ArrayXd;
 using Outcome = withy::StepResult::Outcome;
 
