@@ -1,7 +1,10 @@
 #include "withy/core/simulation/step_parts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "withy/core/model/hinge_rates.hpp"
 
@@ -17,15 +20,36 @@ constexpr double most_parts = 4096;
 StepParts::StepParts(const Model& model, double start, double end) : longest_((end - start) / parts_of_a_run) {
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-    const std::size_t first = model.layout().positions + model.layout().hinges[h].speed;
+    const Slot& slot = model.layout().hinges[h];
     for (std::size_t i = 0; i < rates.size(); ++i)
-      if (rates[i].angular) turning_.push_back(first + i);
+      if (rates[i].angular)
+        turning_.push_back(
+            {model.layout().positions + slot.speed + i,
+             rates[i].coordinate ? static_cast<std::ptrdiff_t>(slot.position + *rates[i].coordinate) : -1});
   }
+}
+
+void StepParts::leave_out(std::span<const double> y,
+                          const std::function<bool(std::span<const double>, std::span<const double>)>& same) {
+  std::vector<double> turned(y.begin(), y.end());
+  std::erase_if(turning_, [&](const Turning& t) {
+    if (t.coordinate < 0) return false;
+    double& angle = turned[static_cast<std::size_t>(t.coordinate)];
+    const double was = angle;
+    // Angles that no symmetry repeats.
+    constexpr std::array<double, 3> angles = {0.7, 2.2, 4.1};
+    const bool left_out = std::all_of(angles.begin(), angles.end(), [&](double by) {
+      angle = was + by;
+      return same(y, turned);
+    });
+    angle = was;
+    return left_out;
+  });
 }
 
 std::size_t StepParts::operator()(double length, std::span<const double> before, std::span<const double> after) const {
   double fastest = 0;
-  for (const std::size_t i : turning_) fastest = std::max({fastest, std::abs(before[i]), std::abs(after[i])});
+  for (const Turning& t : turning_) fastest = std::max({fastest, std::abs(before[t.rate]), std::abs(after[t.rate])});
   const double parts = std::max(length * fastest / radians, longest_ > 0 ? length / longest_ : 0.0);
   return static_cast<std::size_t>(std::clamp(std::ceil(parts), 1.0, most_parts));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,14 +19,23 @@ class StepParts {
  public:
   /// \param start, end of the run [s]; an infinite end: of unknown length
   StepParts(const Model& model, double start, double end);
+  /// Leaves out what turns a coordinate that nothing watched depends on, as a reaction wheel beside a relay on the
+  /// hull: where `same` is true of a state's y and of it turned by that coordinate alone.
+  void leave_out(std::span<const double> y,
+                 const std::function<bool(std::span<const double>, std::span<const double>)>& same);
   /// \param length of the step [s]
   /// \param before, after the states y at its ends
   [[nodiscard]] std::size_t operator()(double length, std::span<const double> before,
                                        std::span<const double> after) const;
 
  private:
-  std::vector<std::size_t> turning_;  ///< elements of y: rates that turn something
-  double longest_ = 0;                ///< part [s]
+  /// Elements of y: a rate that turns something, and the coordinate that is its integral; −1: there is none.
+  struct Turning {
+    std::size_t rate;
+    std::ptrdiff_t coordinate;
+  };
+  std::vector<Turning> turning_;
+  double longest_ = 0;  ///< part [s]
 };
 
 }  // namespace withy

@@ -11,6 +11,7 @@
 #include "withy/core/simulation/output_statistics.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/session.hpp"
+#include "withy/core/simulation/step_parts.hpp"
 #include "withy/tests/loads/scene_run.hpp"
 
 namespace withy {
@@ -185,6 +186,27 @@ TEST(LongSteps, OfAHostSeeAPulseInAFormulaOfTheTime) {
   rest.restore(there);
   ASSERT_TRUE(rest.advance(25, false).reached);
   EXPECT_EQ(rest.state().y, whole.state().y);
+}
+
+TEST(LongSteps, AreNotLookedIntoForAWheelThatNothingWatchedDependsOn) {
+  test::LoadedScene s(
+      "format: withy/1\ntime: {end: 100}\n"
+      "bodies: {hull: {type: rigid, mass: 9, inertia: [1, 1, 1, 0, 0, 0]}, wheel: {type: rigid, mass: 1, inertia: "
+      "[0.1, 0.1, 0.1, 0, 0, 0]}}\n"
+      "hinges:\n  yaw: {type: revolute, axis: [0, 0, 1], parent: world, child: hull}\n"
+      "  spin: {type: revolute, axis: [0, 0, 1], parent: hull, child: wheel}\n"
+      "initial: {hinges: {spin: {rate: [600]}}}\n");
+  const std::vector<double>& y = s.scene.initial.y;
+  const auto sees = [&](const std::string& hinge) {
+    return
+        [at = s.hinge(hinge).position](std::span<const double> a, std::span<const double> b) { return a[at] == b[at]; };
+  };
+  StepParts all(*s.scene.model, 0, 100), of_hull = all, of_wheel = all;
+  of_hull.leave_out(y, sees("yaw"));
+  of_wheel.leave_out(y, sees("spin"));
+  EXPECT_EQ(all(0.1, y, y), 120u) << "60 radians";
+  EXPECT_EQ(of_hull(0.1, y, y), 1u);
+  EXPECT_EQ(of_wheel(0.1, y, y), 120u);
 }
 
 // A formula that changes all along is met wherever steps end: their errors rule, as without it.
