@@ -242,7 +242,10 @@ bool Checker::read_members(const Value& value, std::initializer_list<const std::
   bool good = true;
   for (const auto& [key, member] : value.members()) {
     if (knows(key)) continue;
-    key_error(member.place().path, fmt::format("unknown key {}{}", in_quotes(key), suggestion(key, known())));
+    // In a map in braces a comma ends a value that is not in quotes.
+    key_error(member.place().path,
+              fmt::format("unknown key {}{}", in_quotes(key),
+                          key.ends_with(')') ? "; a formula with a comma needs quotes" : suggestion(key, known())));
     good = false;
   }
   const Value* hinge = value.find("hinge");

@@ -109,6 +109,25 @@ const char* const shorter_steps =
     " What to do: take shorter steps (a smaller 'step', or 'rtol' or 'max_step' of an integrator that controls its "
     "error), or one that no vibration limits, as radau.";
 
+/// Where bodies were bent beyond what kinematics of second order is good for, which grows by what it leaves out; empty
+/// where they were not.
+std::string bent_remedy(const Prepared& prepared, const RunSummary& summary) {
+  constexpr double small = 0.1;
+  double most = 0;
+  for (const auto& [body, ratio] : summary.peak_deflection_ratio) most = std::max(most, ratio);
+  if (!(most > small)) return {};
+  if (prepared.scene.formulation->terms().strain == StrainOrder::exact)
+    return fmt::format(
+        " What to do: where bodies may bend so far, allow it (--set limits.deflection={:g}); if the motion grows all "
+        "the same, look at loads, gains and stiffness (withy check).",
+        std::ceil(3 * prepared.scene.deflection_limit));
+  return fmt::format(
+      " What to do: run it with --formulation exact, which no deflection limits: bodies were bent by {:.2g} of their "
+      "length, and beyond a tenth no other formulation holds. If that ends the same way the motion itself grows, or "
+      "bodies may bend as far as that (limits.deflection).",
+      most);
+}
+
 /// Where closed loops do not go on; empty of trees, and where the mass matrix is what cannot be solved.
 std::string loop_remedy(const Prepared& prepared, const RunSummary& summary) {
   if (loops_of(prepared.model()).empty() || summary.final.y.size() != prepared.equations->size()) return {};
@@ -159,8 +178,11 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
       return fmt::format(" What to do: let min_step be smaller: it is {:g} s, and time could be told apart farther.",
                          least->number());
   if (bends && leaves_something_out(terms))
-    return " What to do: run it with --formulation quadratic, which leaves out less; if that ends the same way it is "
-           "the model and not the formulation.";
+    return " What to do: run it with --formulation quadratic, which leaves out less, or exact where bodies bend by "
+           "more "
+           "than a tenth of their length; if that ends the same way it is the model and not the formulation.";
+  if (summary.status == RunStatus::diverged && bends)
+    if (std::string text = bent_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::singular)
     if (std::string text = loop_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::singular)

@@ -163,7 +163,9 @@ RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, co
 /// Where there is no estimate: why, and what is known without one.
 std::string without_estimate(const Prepared& prepared, const RunSummary& summary, const std::optional<Beyond>& beyond,
                              const RunSettings& settings) {
-  if (!flexible(prepared.model())) return "no body is flexible: all formulations are the same";
+  if (!flexible(prepared.model()))
+    return "no body is flexible: all formulations are the same; what integration leaves is not estimated: another "
+           "tolerance tells";
   if (summary.status == RunStatus::interrupted) return "not estimated: the run was interrupted";
   if (!loops_of(prepared.model()).empty())
     return "not estimated: loops are closed (constraints), and two formulations in one run know trees alone";

@@ -65,7 +65,7 @@ void Monitor::note(std::size_t order, const std::string& place, const std::strin
   if (order >= excess_order_ || size <= deflection_limit_ * length) return;
   excess_order_ = order;
   excess_ = place + " of '" + body + "' is deflected by " + brief(size) + " m, " + brief(size / length) +
-            " times its length (limit " + brief(deflection_limit_) + ")";
+            " times its length (limits.deflection: " + brief(deflection_limit_) + ")";
 }
 
 /// Looks at a deflection that has not been so great before, as the expansion says, and where that does not have the

@@ -62,6 +62,12 @@ initial: {hinges: {shoulder: {rate: [0.1]}}}
   EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 7) << all;
 }
 
+TEST_F(BadDocuments, AFormulaThatACommaCutsIsToldSo) {
+  EXPECT_THAT(
+      problems(std::string(good_scene) + "outputs: {least: {type: expression, value: min(t, shoulder)}}\n", registry),
+      testing::HasSubstr("/outputs/least/shoulder): unknown key \"shoulder)\"; a formula with a comma needs quotes"));
+}
+
 // How many parts a body comes in its plugin says, when it makes it.
 TEST_F(BadDocuments, PartsOfABodyAreNoUnknownNamesWhereNoModelCanBeMade) {
   const std::string all = problems(replaced(good_scene, "law: sine", "law: sinus") +

@@ -366,6 +366,29 @@ TEST(Causes, StepsThatAreShortEnoughAreNoCause) {
   EXPECT_THAT(s.message, HasSubstr("What to do: run it with --formulation quadratic"));
 }
 
+// A cantilever of 2 m that its load bends by more than its length, and back: no fault of the motion.
+TEST(Causes, ABodyThatMayBendFarAndOneWhoseKinematicsMayNot) {
+  SceneValues values = SceneValues::parse(R"(format: withy/1
+time: {end: 2}
+bodies:
+  beam: {type: beam, length: 2, mass_per_length: 0.5, bending_y: {stiffness: 10, modes: 4, family: orthogonal-polynomials}}
+  load: {type: rigid, mass: 6, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+hinges:
+  clamp: {type: weld, parent: world, child: beam}
+  end: {type: weld, parent: beam.tip, child: load}
+gravity: [0, -9.81, 0]
+)",
+                                          "heavy.yaml");
+  const RunSummary exact = run_of(values.choose_formulation("exact", "the test"));
+  EXPECT_EQ(exact.status, RunStatus::diverged);
+  EXPECT_THAT(exact.message, HasSubstr("--set limits.deflection=3"));
+  SceneValues allowed = values;
+  EXPECT_EQ(run_of(allowed.set("limits.deflection", Value(3.0), "the test")).status, RunStatus::completed);
+  const RunSummary quadratic = run_of(values.choose_formulation("quadratic", "the test"));
+  EXPECT_EQ(quadratic.status, RunStatus::diverged);
+  EXPECT_THAT(quadratic.message, HasSubstr("What to do: run it with --formulation exact"));
+}
+
 TEST(Causes, AMassMatrixThatTurnsIndefinite) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
   values.set("loads.slew.time_scale", Value(1.2), "the test");
