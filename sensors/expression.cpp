@@ -8,14 +8,16 @@
 #include <string_view>
 #include <utility>
 
+#include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/formula.hpp"
+#include "withy/core/plugin/formula_course.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/plugin/sensor.hpp"
 
 namespace withy {
 namespace {
 
-class BoundExpression final : public BoundSensor {
+class BoundExpression final : public BoundSensor, public CourseOfTime {
  public:
   /// `places`: of the formula's names among the numbers before it; `time_place` for the time.
   BoundExpression(Formula formula, std::string unit, std::vector<std::size_t> places)
@@ -29,6 +31,8 @@ class BoundExpression final : public BoundSensor {
       named[i] = places_[i] == time_place ? state.time() : inputs.before[places_[i]];
     values[0] = formula_(named);
   }
+  std::size_t courses() const override { return courses_of(formula_); }
+  void course(double t, std::span<double> values) const noexcept override { course_of(formula_, t, values); }
 
  private:
   Formula formula_;

@@ -7,9 +7,9 @@
 
 namespace withy {
 
-/// A BoundLoad or a Motion may be this too (dynamic_cast). Nothing says how fast its formula changes: at rest, steps
-/// that are as long as the motion allows pass over a pulse without a look at it. So a run looks at the formula first
-/// (core/simulation/time_courses.hpp).
+/// A BoundLoad, a Motion or a BoundSensor that loads measure may be this too (dynamic_cast). Nothing says how fast its
+/// formula changes: at rest, steps that are as long as the motion allows pass over a pulse without a look at it. So a
+/// run looks at the formula first (core/simulation/time_courses.hpp).
 class CourseOfTime {
  public:
   virtual ~CourseOfTime() = default;

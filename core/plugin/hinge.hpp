@@ -38,8 +38,8 @@ struct HingeKernel {
 class Hinge {
  public:
   virtual ~Hinge() = default;
-  /// Numbers of coordinates x and of rates (generalized speeds). Where there are as many, rates are ẋ, one by one; there
-  /// are more coordinates where x holds quaternions.
+  /// Numbers of coordinates x and of rates (generalized speeds). Where there are as many, rates are ẋ, one by one;
+  /// there are more coordinates where x holds quaternions.
   [[nodiscard]] virtual std::size_t coordinates() const = 0;
   [[nodiscard]] virtual std::size_t speeds() const = 0;
   /// The coordinates of the reference pose, X_FM as undisplaced as can be.

@@ -8,8 +8,8 @@
 
 namespace withy {
 
-/// The last time before `time` and not before `from` [s] that is one in a run's arithmetic, where denormal numbers count
-/// as zero: what jumps at `time` has not yet jumped there.
+/// The last time before `time` and not before `from` [s] that is one in a run's arithmetic, where denormal numbers
+/// count as zero: what jumps at `time` has not yet jumped there.
 inline double just_before(double time, double from) {
   constexpr double least = std::numeric_limits<double>::min();
   const double before = std::nextafter(time, from);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "withy/core/plugin/course_of_time.hpp"
+#include "withy/core/plugin/sensor.hpp"
 
 namespace withy {
 namespace {
@@ -26,6 +27,8 @@ std::vector<const CourseOfTime*> courses_of(const Model& model) {
   };
   for (const LoadNode& node : model.loads()) add(node.load.get());
   for (const MotionNode& node : model.motions()) add(node.motion.get());
+  if (model.measured() != nullptr)
+    for (const SensorNode& node : *model.measured()) add(node.sensor.get());
   return all;
 }
 

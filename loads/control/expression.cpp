@@ -7,6 +7,7 @@
 
 #include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/formula.hpp"
+#include "withy/core/plugin/formula_course.hpp"
 #include "withy/loads/control/control_load.hpp"
 
 namespace withy {
@@ -27,16 +28,8 @@ class FormulaBlock final : public ControlBlock, public CourseOfTime {
     for (std::size_t i = 0; i < formula_.names().size(); ++i) named[i] = formula_.names()[i] == "t" ? t : w[next++];
     v[0] = formula_(named);
   }
-  std::size_t courses() const override { return signals_.size() < formula_.names().size() ? 2 : 0; }
-  /// Of signals that are neither zero nor one nor like one another, of either sign: what is multiplied with them, with
-  /// their difference or with a function of theirs is seen as well.
-  void course(double t, std::span<double> values) const noexcept override {
-    std::array<double, Formula::most_names> signals{};
-    for (std::size_t i = 0; i < signals.size(); ++i) signals[i] = 1.618 + 0.271 * static_cast<double>(i);
-    output(t, signals, {}, values.first(1));
-    for (double& signal : signals) signal = -signal;
-    output(t, signals, {}, values.last(1));
-  }
+  std::size_t courses() const override { return courses_of(formula_); }
+  void course(double t, std::span<double> values) const noexcept override { course_of(formula_, t, values); }
 
  private:
   Formula formula_;

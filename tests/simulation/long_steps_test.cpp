@@ -131,7 +131,7 @@ TEST(LongSteps, SeeAPulseInAFormulaOfTheTime) {
 }
 
 // A wide pulse lies between the stages of a step as a short one does, a small one beside a great one, and one that a
-// difference of signals multiplies.
+// difference of signals multiplies, and one in an output that the load measures.
 TEST(LongSteps, SeePulsesOfAnyWidthAndHeightInAFormulaOfTheTime) {
   const double root_pi = std::sqrt(std::numbers::pi);
   const struct {
@@ -140,7 +140,8 @@ TEST(LongSteps, SeePulsesOfAnyWidthAndHeightInAFormulaOfTheTime) {
   } pulses[] = {{"exp(-((t - 6.1) / 0.14) ^ 2)", 0.14 * root_pi},
                 {"exp(-((t - 7.7) / 0.4) ^ 2)", 0.4 * root_pi},
                 {"1000 * exp(-((t - 2) / 0.05) ^ 2) + 10 * exp(-((t - 5) / 0.05) ^ 2)", 1010 * 0.05 * root_pi},
-                {"10 * exp(-((t - 5) / 0.05) ^ 2) * (other - slide.rate)", 5 * 0.05 * root_pi}};
+                {"10 * exp(-((t - 5) / 0.05) ^ 2) * (other - slide.rate)", 5 * 0.05 * root_pi},
+                {"gust", 0.05 * root_pi}};
   for (const char* integrator : integrators_with_estimates) {
     for (const auto& pulse : pulses) {
       const bool measures = std::string(pulse.formula).find("other") != std::string::npos;
@@ -153,6 +154,7 @@ hinges:
   slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}
   other: {type: prismatic, axis: [1, 0, 0], parent: world, child: heavy}
 initial: {hinges: {other: {position: [0.5]}}}
+outputs: {gust: {type: expression, value: exp(-((t - 3) / 0.05) ^ 2), unit: N}}
 loads: {pulse: {type: expression, hinge: slide, value: ")" +
                           std::string(pulse.formula) + "\"}}\n");
       // Of the last one v' = 10 g(t) (0.5 − v).
