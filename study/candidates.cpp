@@ -169,13 +169,17 @@ ReferenceFamilies reference_families(const Candidates& candidates, const Prepare
   const bool loaded = std::any_of(model.hinges().begin(), model.hinges().end(), [&](const HingeNode& hinge) {
     return hinge.parent >= 0 && model.bodies()[static_cast<std::size_t>(hinge.parent)].body->shape().modes() > 0;
   });
+  const bool varies = varies_somewhere(prepared.scene);
+  // Where it is not among them it is the scene's own family.
+  const char* const of_the_beam = among(vibration_modes) ? vibration_modes : "";
+  const char* const of_even_ones = among(static_shapes) ? static_shapes : among(polynomials) ? polynomials : "";
   std::vector<std::string> others = all;
   if (loaded) {
-    const char* const knows = varies_somewhere(prepared.scene) ? vibration_modes : loaded_modes;
-    std::erase_if(others, [&](const std::string& family) { return family != knows; });
+    const char* const knows = varies ? of_the_beam : loaded_modes;
+    std::erase_if(others, [&](const std::string& family) { return family != knows && family != of_even_ones; });
   }
-  const char* const first = among(static_shapes) ? static_shapes : among(polynomials) ? polynomials : "";
-  return {first, std::move(others)};
+  // Functions of even beams may come near a beam that varies so evenly that their series seem to lead to the truth.
+  return {varies ? of_the_beam : of_even_ones, std::move(others)};
 }
 
 std::vector<std::string> flexible_bodies(const Scene& scene) {
