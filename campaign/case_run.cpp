@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -15,20 +14,6 @@
 #include "withy/study/step_limit.hpp"
 
 namespace withy::campaign {
-namespace {
-
-/// Numbers that are none end a case as what they are, with their name.
-void check_finite(CaseResult& result, const Plan& plan) {
-  for (std::size_t i = 0; i < result.numbers.size(); ++i) {
-    if (std::isfinite(result.numbers[i])) continue;
-    result.status = name(RunStatus::diverged);
-    result.message = "the run completes, but its " + kept_columns(plan)[i] + " is not finite";
-    result.numbers.clear();
-    return;
-  }
-}
-
-}  // namespace
 
 template <class Action>
 void CaseRun::refusing(Action&& action) {
@@ -112,10 +97,9 @@ void CaseRun::run(const EquationsOfMotion& equations, const study::Control& cont
     result_.status = name(summary.status);
     if (result_.completed()) {
       result_.numbers = kept_->numbers(summary, statistics_);
-      check_finite(result_, plan_);
       // Times that an event has left out have no numbers.
       const std::vector<double> histories = kept_->histories();
-      if (result_.completed()) result_.numbers.insert(result_.numbers.end(), histories.begin(), histories.end());
+      result_.numbers.insert(result_.numbers.end(), histories.begin(), histories.end());
     } else {
       result_.message = summary.message;
     }

@@ -30,13 +30,15 @@ std::string run_command_of(const Plan& plan, const SceneValues& scene, const std
   return text;
 }
 
+Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
+
 /// \param numbers of Histories
 Json histories_json(const Plan& plan, std::span<const double> numbers) {
   const std::vector<double>& times = plan.history.times;
   Json j = {{"t[s]", times}};
   for (const std::string& name : history_columns(plan)) {
     Json& column = j[name] = Json::array();
-    for (const double x : numbers.first(times.size())) column.push_back(std::isnan(x) ? Json() : Json(x));
+    for (const double x : numbers.first(times.size())) column.push_back(finite_or_null(x));
     numbers = numbers.subspan(times.size());
   }
   return j;
@@ -53,7 +55,7 @@ Json case_json(const Plan& plan, const CaseResult& result) {
   const std::vector<std::string> paths = varied_paths(plan), columns = kept_columns(plan);
   for (std::size_t a = 0; a < result.values.size(); ++a) j["values"][paths[a]] = value_json(result.values[a]);
   if (result.completed()) {
-    for (std::size_t i = 0; i < columns.size(); ++i) j["results"][columns[i]] = result.numbers.at(i);
+    for (std::size_t i = 0; i < columns.size(); ++i) j["results"][columns[i]] = finite_or_null(result.numbers.at(i));
     if (!plan.history.of.empty())
       j["histories"] = histories_json(plan, std::span(result.numbers).subspan(columns.size()));
   }

@@ -81,6 +81,9 @@ std::string cell(const Value& value) {
   return value.kind() == Value::Kind::text ? csv_text(value.text()) : "";
 }
 
+/// Empty where a result is not finite, as in results.csv.
+std::string result_cell(double x) { return std::isfinite(x) ? fmt::format("{}", x) : std::string(); }
+
 std::string joined(const std::vector<std::string>& cells) {
   std::string text;
   for (const std::string& c : cells) text += (text.empty() ? "" : ",") + csv_text(c);
@@ -136,7 +139,7 @@ class Collector {
       for (std::size_t a = 0; a < about_.paths.size() + about_.derived.size(); ++a)
         row += ',' + (result ? cell(result->values.at(a)) : "");
       for (std::size_t c = 0; c < about_.columns.size(); ++c)
-        row += result && result->completed() ? fmt::format(",{}", result->numbers.at(c)) : ",";
+        row += ',' + (result && result->completed() ? result_cell(result->numbers.at(c)) : "");
       table.line(row);
       if (result && !result->completed())
         failed.line(fmt::format("{},{},{},{}", i, result->status, csv_text(result->message), csv_text(repeat_of(i))));
@@ -148,7 +151,7 @@ class Collector {
   /// The command that runs a case alone.
   std::string repeat_of(std::uint64_t index) const { return case_command(about_) + fmt::format(" {}", index); }
 
-  /// Some of the numbers of the completed cases among these, where they have them.
+  /// Some of the numbers of the completed cases among these, where they are finite.
   std::vector<std::vector<double>> samples(std::uint64_t begin, std::uint64_t end, std::size_t first,
                                            std::size_t count) {
     std::vector<std::vector<double>> all(count);
@@ -156,18 +159,23 @@ class Collector {
       const auto result = index_.read(i);
       if (!result || !result->completed()) continue;
       for (std::size_t c = 0; c < count; ++c)
-        if (const double x = result->numbers.at(first + c); !std::isnan(x)) all[c].push_back(x);
+        if (const double x = result->numbers.at(first + c); std::isfinite(x)) all[c].push_back(x);
     }
     return all;
   }
 
-  /// "loads.slew.time_scale=0.5": the values that all cases of a point share, empty where they share none.
+  /// ",0.5,": the values that all cases of a point share, empty for those that are drawn, and where no case of the
+  /// point has run.
   std::string point_cells(std::uint64_t point) {
-    const auto first = index_.read(point * about_.draws), second = index_.read(point * about_.draws + 1);
+    std::vector<CaseResult> some;
+    for (std::uint64_t i = point * about_.draws; i < (point + 1) * about_.draws && some.size() < 2; ++i)
+      if (auto result = index_.read(i)) some.push_back(std::move(*result));
     std::string text;
     for (std::size_t a = 0; a < about_.paths.size(); ++a) {
-      const std::string value = first ? cell(first->values.at(a)) : "";
-      const bool shared = second && value == cell(second->values.at(a));
+      const std::string value = some.empty() ? "" : cell(some.front().values.at(a));
+      // Stores of earlier versions do not say what is drawn: there two cases tell it.
+      const bool shared =
+          about_.shared.empty() ? some.size() == 2 && value == cell(some.back().values.at(a)) : about_.shared.at(a);
       text += ',' + (shared ? value : std::string());
     }
     return text;
@@ -240,11 +248,12 @@ class Collector {
       for (std::uint64_t i = 1; i < about_.size; ++i) {
         const auto result = index_.read(i);
         if (!result || !base || !base->completed() || !result->completed()) continue;
+        const double at = result->numbers.at(c), difference = at - base->numbers.at(c);
+        if (!std::isfinite(difference)) continue;
         for (std::size_t a = 0; a < about_.paths.size(); ++a)
           if (result->values.at(a).kind() != Value::Kind::null)
             table.line(fmt::format("{},{},{},{},{}", csv_text(about_.columns[c]), csv_text(about_.paths[a]),
-                                   cell(result->values[a]), result->numbers.at(c),
-                                   result->numbers[c] - base->numbers.at(c)));
+                                   cell(result->values[a]), at, difference));
       }
     table.finish();
   }
@@ -276,8 +285,8 @@ class Collector {
       const MorrisTrajectory trajectory = morris_trajectory(plan, t);
       for (std::size_t k = 0; k < n; ++k)
         for (std::size_t c = 0; c < effects.size(); ++c)
-          effects[c][trajectory.steps[k].axis].push_back((results[k + 1].numbers.at(c) - results[k].numbers.at(c)) /
-                                                         trajectory.steps[k].step);
+          if (const double change = results[k + 1].numbers.at(c) - results[k].numbers.at(c); std::isfinite(change))
+            effects[c][trajectory.steps[k].axis].push_back(change / trajectory.steps[k].step);
     }
     for (std::size_t c = 0; c < effects.size(); ++c)
       for (std::size_t a = 0; a < n; ++a) {
@@ -299,7 +308,9 @@ class Collector {
         if (results.empty()) continue;
         SaltelliSample sample{results.front().numbers.at(c), results.back().numbers.at(c), {}};
         for (std::size_t a = 0; a < n; ++a) sample.mixed.push_back(results[a + 1].numbers.at(c));
-        samples.push_back(std::move(sample));
+        const bool known = std::all_of(results.begin(), results.end(),
+                                       [c](const CaseResult& result) { return std::isfinite(result.numbers[c]); });
+        if (known) samples.push_back(std::move(sample));
       }
       const std::vector<SobolIndex> indices = sobol_indices(samples);
       for (std::size_t a = 0; a < indices.size(); ++a)

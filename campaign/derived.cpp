@@ -26,14 +26,7 @@ const Value* part_of(const Value& whole, const std::string& key) {
 
 /// The scene's own number at a path, in SI units; nothing where there is none.
 std::optional<double> own_number(const study::Prepared& base, const std::string& path) {
-  const Value* at = &base.scene.source;
-  for (std::size_t start = 0; at != nullptr && start <= path.size();) {
-    const std::size_t stop = std::min(path.find('.', start), path.size());
-    at = part_of(*at, path.substr(start, stop - start));
-    start = stop + 1;
-  }
-  if (at == nullptr || at->kind() != Value::Kind::number) return {};
-  return at->number();
+  return number_at(base.scene.source, path);
 }
 
 /// Why a name cannot be used; empty where it can.
@@ -48,6 +41,17 @@ std::string name_trouble(const Plan& plan, const std::string& name, int axis) {
 }
 
 }  // namespace
+
+std::optional<double> number_at(const Value& source, const std::string& path) {
+  const Value* at = &source;
+  for (std::size_t start = 0; at != nullptr && start <= path.size();) {
+    const std::size_t stop = std::min(path.find('.', start), path.size());
+    at = part_of(*at, path.substr(start, stop - start));
+    start = stop + 1;
+  }
+  if (at == nullptr || at->kind() != Value::Kind::number) return {};
+  return at->number();
+}
 
 std::vector<std::string> varied_paths(const Plan& plan) {
   std::vector<std::string> paths;

@@ -2,6 +2,7 @@
 /// Values that follow from others of a case.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ void check_derived(const Plan& plan, Registry& registry, Problems& problems);
 
 /// \param values of the axes; null where the scene's own stays
 double value_of(const Derived& derived, const study::Prepared& base, const std::vector<Value>& values);
+
+/// The number at a path of the checked values of a scene, in SI units; nothing where there is none.
+std::optional<double> number_at(const Value& source, const std::string& path);
 
 /// Of the axes, then of what is derived: what a case has values for.
 std::vector<std::string> varied_paths(const Plan& plan);

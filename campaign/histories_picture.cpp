@@ -43,6 +43,7 @@ void HistoriesPicture::add(std::uint64_t point, const std::string& values, const
                            std::span<const double> numbers) {
   if (const std::string place = fmt::format("{} {}", point, name); place != last_) {
     last_ = place;
+    ++asked_;
     full_ = picture_.panels.size() == most_panels;
     if (full_) return;
     std::string at;
@@ -64,6 +65,8 @@ void HistoriesPicture::add(std::uint64_t point, const std::string& values, const
 
 std::string HistoriesPicture::svg() const {
   Picture whole{picture_.title, picture_.legend, {}};
+  if (asked_ > picture_.panels.size())
+    whole.title += fmt::format(": the first {} of {}, histories.csv has all", picture_.panels.size(), asked_);
   for (const Panel& panel : picture_.panels) {
     whole.panels.push_back(panel);
     if (narrow(panel)) whole.panels.push_back(about_median(panel));

@@ -14,8 +14,8 @@ namespace withy::campaign {
 /// Least, 5, 25, 50, 75 and 95 %, greatest.
 inline constexpr std::array<double, 7> shares_of_histories = {0, 0.05, 0.25, 0.5, 0.75, 0.95, 1};
 
-/// A panel a result and a point of the grids, of the first dozen; another about the median where the bands are narrow
-/// beside its way.
+/// A panel a result and a point of the grids, of the first dozen, which the title says where there are more; another
+/// about the median where the bands are narrow beside its way.
 class HistoriesPicture {
  public:
   explicit HistoriesPicture(std::string title);
@@ -27,7 +27,8 @@ class HistoriesPicture {
 
  private:
   Picture picture_;
-  std::string last_;  ///< result and point
+  std::string last_;       ///< result and point
+  std::size_t asked_ = 0;  ///< pairs of these
   bool full_ = false;
 };
 

@@ -16,6 +16,11 @@
 namespace withy::campaign {
 namespace {
 
+constexpr std::array<std::string_view, 5> over_runs = {"min", "max", "mean", "rms", "integral"};
+
+/// The output that has the motion of a hinge.
+std::string motion_of(const std::string& hinge) { return hinge + ".motion"; }
+
 /// Whether the table shows a column by this name; most names are shown as they are.
 bool shown_as(const std::string& column, const std::string& name) {
   return column.find('[') == std::string::npos ? column == name : column_name(column) == name;
@@ -76,24 +81,34 @@ std::optional<std::pair<std::string, std::size_t>> deflection_of(const std::stri
   return std::pair(column.substr(0, at), static_cast<std::size_t>(column.back() - 'x'));
 }
 
-/// A number of an output, and what is asked of it over a run.
+/// A number of an output, by its name there and by the one it is asked for, and what is asked of it over a run.
 struct OverRun {
-  std::string output, number, unit, what;
+  std::string output, number, shown, unit, what;
 };
 
-/// What "root_m.mz.max" names, and "root_m.max" of every number of the output; nothing where there is none.
+/// The number that has a hinge's rate among outputs, where its motion is one; the name itself where it is no rate.
+std::string sensed_rate(const Model& model, const std::string& name) {
+  for (const HingeNode& hinge : model.hinges())
+    for (const Column& rate : rate_columns(hinge))
+      if (rate.name == name) return motion_of(hinge.name) + name.substr(hinge.name.size());
+  return name;
+}
+
+/// What "root_m.mz.max" names, "root_m.max" of every number of the output, and "shoulder.rate.max"; nothing where there
+/// is none.
 std::vector<OverRun> over_run(const study::Prepared& prepared, const std::string& name) {
   const std::size_t dot = name.rfind('.');
   if (dot == std::string::npos) return {};
   const std::string asked = name.substr(0, dot), what = name.substr(dot + 1);
-  constexpr std::array<std::string_view, 5> known = {"min", "max", "mean", "rms", "integral"};
-  if (std::find(known.begin(), known.end(), what) == known.end()) return {};
+  if (std::find(over_runs.begin(), over_runs.end(), what) == over_runs.end()) return {};
+  const std::string sensed = sensed_rate(prepared.model(), asked);
   std::vector<OverRun> found;
   for (const SensorNode& node : prepared.scene.outputs)
     for (const Column& c : columns_of(node)) {
       if (c.name == name) return {};
-      if (c.name == asked || node.name == asked)
-        found.push_back({node.name, c.name, what == "integral" ? study::unit_over_time(c.unit) : c.unit, what});
+      if (c.name == sensed || node.name == asked)
+        found.push_back({node.name, c.name, c.name == sensed ? asked : c.name,
+                         what == "integral" ? study::unit_over_time(c.unit) : c.unit, what});
     }
   return found;
 }
@@ -107,6 +122,20 @@ double value_of(const OutputStatistics& s, const std::string& what) {
 }
 
 }  // namespace
+
+std::optional<std::string> output_of_rate(const Value& scene, const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  const Value* hinges = scene.find("hinges");
+  if (dot == std::string::npos || hinges == nullptr || hinges->kind() != Value::Kind::map) return {};
+  if (std::find(over_runs.begin(), over_runs.end(), name.substr(dot + 1)) == over_runs.end()) return {};
+  for (const auto& [hinge, definition] : hinges->members()) {
+    if (!name.starts_with(hinge + ".") || hinge.size() + 1 >= dot) continue;
+    const std::string number = name.substr(hinge.size() + 1, dot - hinge.size() - 1);
+    const bool component = number.size() == 2 && std::string_view("wv").find(number[0]) != std::string_view::npos;
+    if (component || number == "rate" || number.starts_with("rate.")) return motion_of(hinge);
+  }
+  return {};
+}
 
 std::string kept_problem(const study::Prepared& prepared, const std::string& name, bool at_end) {
   if (!over_run(prepared, name).empty()) return at_end ? "" : "is over the run already: need it under 'final'";
@@ -124,7 +153,7 @@ std::vector<std::string> kept_columns(const Plan& plan) {
   const auto add = [&](const char* what, const std::vector<std::string>& asked) {
     for (const std::string& name : asked) {
       const std::vector<OverRun> over = over_run(*plan.base, name);
-      for (const OverRun& o : over) names.push_back(fmt::format("{}.{}.{}[{}]", what, o.number, o.what, o.unit));
+      for (const OverRun& o : over) names.push_back(fmt::format("{}.{}.{}[{}]", what, o.shown, o.what, o.unit));
       if (!over.empty()) continue;
       for (const Column& c : selected(plan, name))
         names.push_back(fmt::format("{}.{}[{}]", what, column_name(c.name), c.unit.empty() ? "1" : c.unit));

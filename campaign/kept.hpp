@@ -2,6 +2,7 @@
 /// What is kept of a case: numbers at its end and greatest numbers along it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,15 @@
 
 namespace withy::campaign {
 
+/// The output that tells what a hinge's rate has been over a run: "shoulder.motion" of "shoulder.rate.max", and of
+/// "base.wx.rms" "base.motion". Nothing for other names.
+/// \param scene its values as they were written
+std::optional<std::string> output_of_rate(const Value& scene, const std::string& name);
+
 /// Empty where a name is of a hinge, a column of `results.csv` or a group of them; else what is wrong, with the
 /// nearest.
 /// \param at_end of `final`, where it may be what a number of an output has been over the run as well: `root_m.mz.max`
-/// (`min`, `max`, `mean`, `rms`, `integral`)
+/// (`min`, `max`, `mean`, `rms`, `integral`), or a rate of a hinge whose output is there
 std::string kept_problem(const study::Prepared& prepared, const std::string& name, bool at_end);
 
 /// Columns of the table for what a plan keeps: `final.shoulder[rad]`, `peak.link1.tip.deflection_y[m]`.

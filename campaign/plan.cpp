@@ -15,6 +15,7 @@
 #include "withy/campaign/list_file.hpp"
 #include "withy/campaign/plan_reader.hpp"
 #include "withy/campaign/random.hpp"
+#include "withy/campaign/si_levels.hpp"
 #include "withy/campaign/store.hpp"
 #include "withy/campaign/trials.hpp"
 #include "withy/results/json_text.hpp"
@@ -64,6 +65,7 @@ class PlanBuilder {
     std::optional<SceneValues> base = read_scene();
     if (base) plan_.sources = try_values(*base, trials_, plan_.file, registry_, problems_);
     const bool good = problems_.none();
+    if (base && good) use_si(plan_, *base, registry_);
     if (base) plan_.base = prepared_base(std::move(*base), registry_, problems_);
     if (plan_.base == nullptr) return std::move(plan_);
     check_derived(plan_, registry_, problems_);
@@ -107,9 +109,10 @@ class PlanBuilder {
   void ask_kept(SceneValues& values) {
     for (const auto* names : {&plan_.final, &plan_.peak, &plan_.history.of})
       for (const std::string& name : *names) {
-        if (defines_output(values.root(), name) || !asked_output(values.root(), name)) continue;
-        values.set("outputs", Value(name), origin_of(plan_.file, reader_.key_place("/keep")));
-        plan_.set.emplace_back("outputs", Value(name));
+        const std::string asked = output_of_rate(values.root(), name).value_or(name);
+        if (defines_output(values.root(), asked) || !asked_output(values.root(), asked)) continue;
+        values.set("outputs", Value(asked), origin_of(plan_.file, reader_.key_place("/keep")));
+        plan_.set.emplace_back("outputs", Value(asked));
       }
   }
 

@@ -11,6 +11,8 @@
 
 #include "withy/results/output_file.hpp"
 #include "withy/results/run_command.hpp"
+#include "withy/scene/names.hpp"
+#include "withy/study/input_error.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -19,6 +21,18 @@ std::string directives(const std::vector<std::string>& all) {
   std::string text = "#!/bin/bash\n";
   for (const std::string& one : all) text += "#SBATCH " + one + '\n';
   return text;
+}
+
+/// The directive of a log in the store. sbatch takes a line apart at blanks but within quotes, where a backslash goes
+/// before what is meant as it is; in names of files % begins what Slurm puts in.
+std::string log_directive(const SlurmJob& job, const char* name) {
+  std::string text = "--output=\"";
+  for (const char c : job.store.string()) {
+    if (c == '"') text += '\\';
+    text += c;
+    if (c == '%') text += c;
+  }
+  return text + "/slurm/" + name + '"';
 }
 
 /// What a command prints. \throws std::runtime_error where it fails
@@ -42,7 +56,7 @@ std::string array_script(const SlurmJob& job) {
                                   fmt::format("--cpus-per-task={}", job.cpus),
                                   "--requeue",
                                   "--open-mode=append",
-                                  fmt::format("--output={}/slurm/%a.log", job.store.string()),
+                                  log_directive(job, "%a.log"),
                                   fmt::format("--signal=B:USR1@{}", job.warning)};
   if (!job.time.empty()) all.push_back("--time=" + job.time);
   all.insert(all.end(), job.options.begin(), job.options.end());
@@ -72,14 +86,18 @@ exit "$status"
 }
 
 std::string collect_script(const SlurmJob& job) {
-  std::vector<std::string> all = {"--job-name=withy-collect",
-                                  fmt::format("--output={}/slurm/collect.log", job.store.string())};
+  std::vector<std::string> all = {"--job-name=withy-collect", log_directive(job, "collect.log")};
   all.insert(all.end(), job.options.begin(), job.options.end());
   return directives(all) +
          fmt::format("\nexec {} sweep collect {}\n", quoted(job.program.string()), quoted(job.store.string()));
 }
 
 Submitted submit(const SlurmJob& job, bool dry) {
+  // In a name with a backslash Slurm puts nothing in and leaves the backslash out; a directive is one line.
+  if (job.store.string().find_first_of("\\\n") != std::string::npos)
+    throw study::InputError(in_quotes(job.store.string()) +
+                            " has a backslash or an end of a line in its name, with which Slurm writes no log; need "
+                            "another folder");
   const std::filesystem::path folder = job.store / "slurm";
   std::filesystem::create_directories(folder);
   Submitted submitted{folder / "array.sh", folder / "collect.sh", {}, {}};

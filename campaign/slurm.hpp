@@ -30,7 +30,8 @@ struct Submitted {
   std::string array_job, collect_job;  ///< as sbatch says them; empty where nothing was submitted
 };
 /// Writes the scripts into the store's folder `slurm` and has sbatch queue them. \param dry only writes them
-/// \throws std::runtime_error where sbatch fails; std::system_error
+/// \throws study::InputError where Slurm cannot write logs into that folder; std::runtime_error where sbatch fails;
+/// std::system_error
 Submitted submit(const SlurmJob& job, bool dry);
 
 }  // namespace withy::campaign

@@ -46,6 +46,7 @@ Json json_of(const StoreDescription& d) {
           {"levels", d.levels},
           {"seed", d.seed},
           {"paths", d.paths},
+          {"shared", d.shared},
           {"derived", d.derived},
           {"columns", d.columns},
           {"drawn", d.drawn},
@@ -89,7 +90,8 @@ std::optional<StoreDescription> described(const std::filesystem::path& store) {
     d.derived = j.at("derived");
     d.columns = j.at("columns");
     d.drawn = j.at("drawn");
-    // Stores of earlier versions keep nothing over time.
+    // Stores of earlier versions keep nothing over time, and do not say what is drawn.
+    d.shared = j.value("shared", std::vector<bool>());
     d.histories = j.value("histories", std::vector<std::string>());
     d.times = j.value("times", std::vector<double>());
     d.plugin_folders = j.value("plugin_folders", std::vector<std::string>());
@@ -148,6 +150,7 @@ StoreDescription description_of(const Plan& plan) {
   d.seed = plan.seed;
   for (const Axis& axis : plan.axes) {
     d.paths.push_back(axis.path);
+    d.shared.push_back(!axis.drawn());
     d.drawn = d.drawn || axis.drawn();
   }
   for (const Derived& derived : plan.derived) d.derived.push_back(derived.path);

@@ -27,6 +27,7 @@ struct StoreDescription {
   std::size_t levels = 4;
   std::uint64_t seed = 0;
   std::vector<std::string> paths;      ///< of what varies
+  std::vector<bool> shared;            ///< of each: one value a point of the grids; empty in older stores
   std::vector<std::string> derived;    ///< of what follows from it
   std::vector<std::string> columns;    ///< of what is kept
   std::vector<std::string> histories;  ///< of what is kept over time; a case's numbers are of them behind the columns

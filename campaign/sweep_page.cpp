@@ -160,10 +160,12 @@ class Page {
               {"columns", Json::array()}};
     for (const Numbers& column : columns_) page["columns"].push_back(column_json(column));
     page["envelopes"] = envelopes();
+    page["envelopes_in_all"] = envelopes_;
     page["sample"] = {{"every", shown_every()}, {"rows", std::move(sample_)}};
     if (collected_.statistics) page["statistics"] = table_json(store_ / "statistics.csv");
     if (collected_.indices) page["indices"] = table_json(store_ / "indices.csv");
     if (collected_.histories) page["histories"] = histories();
+    page["histories_in_all"] = histories_;
     page["failures"] = failures();
     return page;
   }
@@ -205,12 +207,11 @@ class Page {
 
   Json envelopes() {
     Json all = Json::object();
-    std::size_t count = 0;
     for (const Numbers& axis : columns_) {
       if (axis.result || !axis.numeric) continue;
       const Levels levels(axis);
       for (const Numbers& result : columns_)
-        if (result.result && count++ < most_envelopes)
+        if (result.result && envelopes_++ < most_envelopes)
           all[axis.name][result.name] = envelope_json(axis, levels, result);
     }
     return all;
@@ -218,20 +219,22 @@ class Page {
 
   /// For each result and point of the grids: times, and percentiles over the cases at each of them, which are null
   /// where no case has come to it.
-  Json histories() const {
+  Json histories() {
     Json list = Json::array();
     const std::size_t times = about_.paths.size() + 2;  // the column of the time
     bool head = true;
     read_rows(store_ / "histories.csv", [&](const Cells& cells) {
       if (std::exchange(head, false)) return;
       const std::string &name = cells.at(times - 1), &point = cells.at(0);
-      if (list.empty() || list.back()["name"] != name || list.back()["point"] != point) {
-        if (list.size() == most_histories) return;
+      if (std::string place = point + ' ' + name; place != last_history_) {
+        last_history_ = std::move(place);
+        if (++histories_ > most_histories) return;  // they are counted all the same
         Json of = Json::object();
         for (std::size_t a = 0; a < about_.paths.size(); ++a)
           if (!cells.at(1 + a).empty()) of[about_.paths[a]] = cells[1 + a];
         list.push_back({{"name", name}, {"point", point}, {"of", of}, {"rows", Json::array()}});
       }
+      if (histories_ > most_histories) return;
       Json row = Json::array();
       for (std::size_t c = times; c < cells.size(); ++c) {
         const std::optional<double> number = plain_number(cells[c]);
@@ -259,6 +262,8 @@ class Page {
   const Collected& collected_;
   StoreDescription about_;
   std::vector<Numbers> columns_;
+  std::size_t envelopes_ = 0, histories_ = 0;  ///< that there are, on the page or not
+  std::string last_history_;                   ///< its point and its result
   Json sample_ = Json::array();
 };
 

@@ -1,7 +1,9 @@
 #include "elastodyn.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -10,6 +12,9 @@
 #include <numbers>
 #include <optional>
 
+#include "withy/core/plugin/body.hpp"
+#include "withy/core/shape/modal_mass.hpp"
+#include "withy/core/shape/vibrations.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene_error.hpp"
 
@@ -60,11 +65,16 @@ class ElastoDynReader {
     if (lines_.size() > 1 && words_of(lines_[1]).size() > 1) beam_.title = lines_[1];
     if (!beam_.title.empty() && beam_.title.back() == '\r') beam_.title.pop_back();
     table();
-    if (diagnostics_.ok()) adjust();
+    if (diagnostics_.ok()) {
+      adjust();
+      remark();
+    }
     return std::move(beam_);
   }
 
  private:
+  /// Before the first value, whose own first words may be a number and a name, as "5 MW".
+  static constexpr int title_lines = 3;
   struct Keyed {
     double value = 0;
     int line = 0;
@@ -118,6 +128,7 @@ class ElastoDynReader {
       // Towards feather: the trailing edge turns downwind, from z to y.
       if (!beam_.tower) beam_.twist.push_back((0.0 - (*numbers)[twist]) * std::numbers::pi / 180);  // no −0
       check_row(i, static_cast<int>(line) + 1);
+      note_unread(heading, *numbers, {0, mass, y, z, twist});
     }
     if (beam_.fraction.front() != 0 || std::abs(beam_.fraction.back() - 1) > 1e-9)
       error(static_cast<int>(heading_) + 1, fmt::format("got stations from {} to {} of the length; need 0 to 1",
@@ -141,6 +152,16 @@ class ElastoDynReader {
     return {};
   }
 
+  /// Nothing is lost with a column of zeros.
+  void note_unread(const std::vector<std::string>& heading, const std::vector<double>& numbers,
+                   std::initializer_list<std::size_t> read) {
+    for (std::size_t c = 0; c < heading.size(); ++c) {
+      if (std::find(read.begin(), read.end(), c) != read.end() || numbers[c] == 0) continue;
+      std::vector<std::string>& unread = unread_[heading[c] == "PitchAxis" || heading[c] == "AeroCent"];
+      if (std::find(unread.begin(), unread.end(), heading[c]) == unread.end()) unread.push_back(heading[c]);
+    }
+  }
+
   void check_row(std::size_t i, int line) const {
     if (i > 0 && !(beam_.fraction[i] > beam_.fraction[i - 1])) error(line, "need stations in ascending order");
     for (const auto* column : {&beam_.mass_per_length, &beam_.along_y, &beam_.along_z})
@@ -154,23 +175,57 @@ class ElastoDynReader {
     for (double& x : beam_.mass_per_length) x *= m;
     for (double& x : beam_.along_y) x *= y;
     for (double& x : beam_.along_z) x *= z;
-    beam_.damping_y = keyed(t ? "TwrFADmp(1)" : "BldFlDmp(1)", 0) / 100;
-    beam_.damping_z = keyed(t ? "TwrSSDmp(1)" : "BldEdDmp(1)", 0) / 100;
+    beam_.damping_y = damping(t ? "TwrFADmp" : "BldFlDmp");
+    beam_.damping_z = damping(t ? "TwrSSDmp" : "BldEdDmp");
+  }
+
+  /// Ratios of the first modes in a direction, from per cent.
+  std::vector<double> damping(const std::string& key) const {
+    std::vector<double> ratios{keyed(key + "(1)", 0) / 100};
+    if (keyed_.contains(key + "(2)")) ratios.push_back(keyed(key + "(2)", 0) / 100);
+    return ratios;
+  }
+
+  /// What of the file is in no beam.
+  void remark() {
     beam_.remarks.emplace_back(
         "The file's mode shapes are left out: modes of vibration found from the table take their place, as many as "
         "wanted.");
-    for (const auto& [key, keyed] : keyed_)
-      if (key.find("StTunr") != std::string::npos && keyed.value != 1)
-        beam_.remarks.push_back(
-            fmt::format("{} = {} on line {} is left out: it tunes a single mode.", key, keyed.value, keyed.line));
+    for (const auto& [key, keyed] : keyed_) {
+      const bool tuner = key.find("StTunr") != std::string::npos;
+      if (tuner ? keyed.value != 1 : keyed.line > title_lines && !is_read(key))
+        beam_.remarks.push_back(fmt::format("{} = {} on line {} is left out{}.", key, keyed.value, keyed.line,
+                                            tuner ? ": it tunes a single mode" : ""));
+    }
+    remark_on(unread_[true], "what air acts on is no matter of the beam");
+    remark_on(unread_[false],
+              "the beam bends in two directions along a straight axis, as in ElastoDyn, without torsion, extension, "
+              "rotary inertia and masses beside the axis");
+  }
+  void remark_on(const std::vector<std::string>& columns, const char* why) {
+    if (columns.empty()) return;
+    const bool one = columns.size() == 1;
+    beam_.remarks.push_back(fmt::format("Column{} {} of the table {} left out: {}.", one ? "" : "s",
+                                        fmt::join(columns, ", "), one ? "is" : "are", why));
+  }
+  /// Whether a keyword is one whose value the beam has.
+  static bool is_read(const std::string& key) {
+    for (const char* read : {"NBlInpSt", "NTwInpSt", "AdjBlMs", "AdjFlSt", "AdjEdSt", "AdjTwMa", "AdjFASt", "AdjSSSt"})
+      if (key == read) return true;
+    return key.find("Dmp(1)") != std::string::npos || key.find("Dmp(2)") != std::string::npos;
   }
 
   Diagnostics& diagnostics_;
   std::vector<std::string> lines_;
   std::map<std::string, Keyed> keyed_;
   std::size_t heading_ = 0;
+  std::map<bool, std::vector<std::string>> unread_;  ///< columns that are not zero all along; true: those of air
   ElastoDynBeam beam_;
 };
+
+const char* direction(const ElastoDynBeam& beam, bool y) {
+  return beam.tower ? (y ? "fore-aft" : "side to side") : (y ? "flapwise" : "edgewise");
+}
 
 /// Rows [x, value] of a table over the beam, four in a line.
 std::string rows_text(const ElastoDynBeam& beam, const std::vector<double>& values, double length, const char* indent) {
@@ -183,6 +238,34 @@ std::string rows_text(const ElastoDynBeam& beam, const std::vector<double>& valu
   return text + "]\n";
 }
 
+/// Of each of a beam's own modes, in the order that damping counts them in: whether it moves along y more than along z.
+/// What is apart is kept apart, so that directions of equal frequencies do not mix. None where a mode has no mass.
+std::vector<bool> directions_of_modes(const Body& body) {
+  const ModalShape& shape = body.shape();
+  const Eigen::MatrixXd& K = shape.stiffness;
+  const Eigen::MatrixXd G = modal_mass(shape);
+  std::vector<std::pair<double, bool>> modes;
+  for (const std::vector<Eigen::Index>& group : coupled_coordinates(K, G)) {
+    const Eigen::MatrixXd inertia = G(group, group);
+    if (Eigen::LLT<Eigen::MatrixXd>(inertia).info() != Eigen::Success) return {};
+    const Vibrations found = vibrations(K(group, group), inertia);
+    for (Eigen::Index k = 0; k < found.squares.size(); ++k) {
+      const Eigen::VectorXd v = found.vectors.col(k), momentum = inertia * v;
+      double along_y = 0;  // share of the modal mass, which is 1
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        if (shape.mode_names[static_cast<std::size_t>(group[i])].starts_with("bending_y"))
+          along_y += v[at] * momentum[at];
+      }
+      modes.emplace_back(found.squares[k], along_y > 0.5);
+    }
+  }
+  std::stable_sort(modes.begin(), modes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<bool> along;
+  for (const auto& [square, y] : modes) along.push_back(y);
+  return along;
+}
+
 }  // namespace
 
 ElastoDynBeam read_elastodyn(std::string_view text, const std::string& file) {
@@ -190,6 +273,29 @@ ElastoDynBeam read_elastodyn(std::string_view text, const std::string& file) {
   ElastoDynBeam beam = ElastoDynReader(text, diagnostics).read();
   if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
   return beam;
+}
+
+void assign_damping(ElastoDynBeam& beam, const Body& body) {
+  std::map<bool, std::size_t> known;  // of each direction, how many have gone before
+  std::string told;
+  int number = 0;
+  for (const bool y : directions_of_modes(body)) {
+    const std::vector<double>& ratios = y ? beam.damping_y : beam.damping_z;
+    const double ratio = ratios[std::min(known[y]++, ratios.size() - 1)];
+    ++number;
+    if (known[y] <= ratios.size())
+      told += fmt::format("{}{} ({}, {})", told.empty() ? "" : ", ", number, direction(beam, y), ratio);
+    if (ratio != beam.damping_y.front()) beam.ratios[number] = ratio;
+  }
+  if (number == 0)
+    beam.remarks.emplace_back(
+        "All modes have the damping ratio of the first in the file: the masses are too far apart to "
+        "tell the modes from one another.");
+  if (!beam.ratios.empty())
+    beam.remarks.push_back(
+        fmt::format("The file has damping ratios of the beam's modes {}; of the others it says nothing, and each has "
+                    "that of the last before it in its direction.",
+                    told));
 }
 
 std::string scene_text(const ElastoDynBeam& beam, double length, double tip_mass, const std::string& source) {
@@ -208,14 +314,19 @@ std::string scene_text(const ElastoDynBeam& beam, double length, double tip_mass
       length, rows_text(beam, beam.mass_per_length, length, "      "));
   if (std::any_of(beam.twist.begin(), beam.twist.end(), [](double angle) { return angle != 0; }))
     out += "    twist:   # rad" + rows_text(beam, beam.twist, length, "      ");
-  out += fmt::format("    damping_ratio: {}   # of the first mode {}; {}: {}\n", beam.damping_y,
-                     beam.tower ? "fore-aft" : "flapwise", beam.tower ? "side to side" : "edgewise", beam.damping_z);
+  out += fmt::format("    damping_ratio: {}\n", beam.damping_y.front());
+  if (!beam.ratios.empty()) {
+    std::string rows;
+    for (const auto& [mode, ratio] : beam.ratios)
+      rows += fmt::format("{}[{}, {}]", rows.empty() ? "" : ", ", mode, ratio);
+    out += fmt::format("    damping: {{ratios: [{}]}}   # of single modes, in the order of frequency\n", rows);
+  }
   const std::string family =
       tip_mass > 0 ? fmt::format("{{name: vibration-modes, tip_mass: {}}}", tip_mass) : "vibration-modes";
   for (const bool y : {true, false})
-    out += fmt::format("    bending_{}:   # {}\n      modes: 3\n      family: {}\n      stiffness:{}", y ? 'y' : 'z',
-                       beam.tower ? (y ? "fore-aft" : "side to side") : (y ? "flapwise" : "edgewise"), family,
-                       rows_text(beam, y ? beam.along_y : beam.along_z, length, "        "));
+    out +=
+        fmt::format("    bending_{}:   # {}\n      modes: 3\n      family: {}\n      stiffness:{}", y ? 'y' : 'z',
+                    direction(beam, y), family, rows_text(beam, y ? beam.along_y : beam.along_z, length, "        "));
   if (tip_mass > 0)
     out += fmt::format("  top: {{type: rigid, mass: {}}}   # what the tip carries, as a point\n", tip_mass);
   out += fmt::format("\nhinges:\n  root: {{type: weld, parent: world, child: {}{}}}\n", name,

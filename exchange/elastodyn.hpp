@@ -2,11 +2,16 @@
 /// Blades and towers of OpenFAST's ElastoDyn: tables of distributed properties to beams.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "withy/core/plugin/value.hpp"
+
+namespace withy {
+class Body;
+}
 
 namespace withy::exchange {
 
@@ -19,12 +24,18 @@ struct ElastoDynBeam {
   std::vector<double> mass_per_length;   ///< [kg/m]
   std::vector<double> along_y, along_z;  ///< bending stiffness of deflections along y and z [N m²]
   std::vector<double> twist;             ///< of the sections about x [rad], less than zero towards feather; tower: none
-  double damping_y = 0, damping_z = 0;   ///< of critical, in the first mode of each direction
-  std::vector<std::string> remarks;      ///< what has no place in a beam, a sentence each
+  /// Of critical: of the first modes in each direction, as many as the file tells of, one at least.
+  std::vector<double> damping_y, damping_z;
+  std::map<int, double> ratios;      ///< of the beam's modes, from 1, whose damping is not that of the first along y
+  std::vector<std::string> remarks;  ///< what has no place in a beam, a sentence each
 };
 
 /// \throws SceneError with every problem and its line.
 ElastoDynBeam read_elastodyn(std::string_view text, const std::string& file);
+
+/// Sets `ratios`, and tells of them: which of the beam's own modes are the file's, by the direction that they move in.
+/// \param body made of the beam
+void assign_damping(ElastoDynBeam& beam, const Body& body);
 
 /// A scene of the beam, clamped at its root, of this length [m], with a rigid mass [kg] at its tip where there is one.
 std::string scene_text(const ElastoDynBeam& beam, double length, double tip_mass, const std::string& source);

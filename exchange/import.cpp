@@ -113,9 +113,12 @@ ImportedScene import_model(const ModelImport& what, Registry& registry) {
   if (!(what.length > 0))
     throw std::invalid_argument(
         "--length is missing: ElastoDyn's files of blades and towers have fractions of it alone");
-  const ElastoDynBeam beam = read_elastodyn(text, what.file);
-  ImportedScene scene{scene_text(beam, what.length, what.tip_mass, what.file),
-                      beam.tower ? "ElastoDyn tower" : "ElastoDyn blade", beam.remarks};
+  ElastoDynBeam beam = read_elastodyn(text, what.file);
+  const auto made = [&] { return scene_text(beam, what.length, what.tip_mass, what.file); };
+  // The modes that damping is of are known of the beam alone.
+  const Scene undamped = check_made(made(), {}, {}, what.file, registry);
+  assign_damping(beam, *undamped.model->bodies()[0].body);
+  ImportedScene scene{made(), beam.tower ? "ElastoDyn tower" : "ElastoDyn blade", beam.remarks};
   static_cast<void>(check_made(scene.text, {}, {}, what.file, registry));
   return scene;
 }

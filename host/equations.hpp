@@ -55,9 +55,9 @@ class Equations {
   /// `derivatives` to rounding; elsewhere in every bit. What a row gets depends on that row alone, to the last bit.
   /// Allocates at the first call. Spans that are not rows of size(), or not as many, are std::invalid_argument.
   EvaluatedRows derivatives_many(double t, std::span<const double> y, std::span<double> y_dot);
-  /// ∂f/∂y, row after row. Exact, but for parts that loads leave to differences; with respect to a quaternion along its
-  /// unit sphere. \throws SimulationStopped where f is not to be had there; study::InputError where the formulation has
-  /// no derivatives.
+  /// ∂f/∂y, row after row. Exact, but for parts that loads leave to differences. With respect to a quaternion along its
+  /// unit sphere, but for its own rate, which is linear in all four of its components. \throws SimulationStopped where
+  /// f is not to be had there; study::InputError where the formulation has no derivatives.
   void jacobian(double t, std::span<const double> y, std::span<double> jacobian);
   /// Scales quaternions in y back to unit length.
   void normalize(std::span<double> y);

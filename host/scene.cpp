@@ -62,6 +62,11 @@ Scene Scene::parse(const Library& library, std::string_view text, const std::str
   return Scene(std::make_unique<Parts>(Parts{library, std::string(text), name, SceneValues::parse(text, name)}));
 }
 
+Scene Scene::parse(const Library& library, std::string_view text, const std::string& name, const std::string& folder) {
+  return Scene(
+      std::make_unique<Parts>(Parts{library, std::string(text), name, SceneValues::parse(text, name, folder)}));
+}
+
 Scene& Scene::set(std::string_view path, double value) { return set(path, std::string_view(fmt::format("{}", value))); }
 
 Scene& Scene::set(std::string_view path, std::string_view text) {
@@ -80,11 +85,12 @@ Scene& Scene::threads(std::size_t count) {
   return *this;
 }
 
-void Scene::check() const { static_cast<void>(make_scene(parts_->values, library().registry())); }
+void Scene::check() const { study::check_start(study::prepare(parts_->values, library().registry())); }
 
 const std::string& Scene::text() const { return parts_->text; }
 const std::string& Scene::name() const { return parts_->name; }
 const std::vector<std::string>& Scene::changes() const { return parts_->changes; }
+const std::string& Scene::folder() const { return parts_->values.document().whole_directory; }
 std::string Scene::values() const {
   const SceneValues& values = parts_->values;
   if (!values.problems().errors().empty()) check();  // which reports them with every other problem
@@ -102,6 +108,7 @@ std::shared_ptr<const study::Prepared> Scene::prepare() const {
 
 Result Scene::run(const Follow& follow) const {
   const std::shared_ptr<const study::Prepared> prepared = prepare();
+  study::check_integrator(*prepared);
   Result result;
   FlatRecorder recorder(result);
   RunTable table(*prepared, recorder);

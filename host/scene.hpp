@@ -47,6 +47,9 @@ class Scene {
   static Scene read(const Library& library, const std::string& file);
   /// \param name stands for the file in messages; relative names of other files begin at its folder
   static Scene parse(const Library& library, std::string_view text, const std::string& name = "scene");
+  /// The same with the folder that relative names of other files begin at, from the root on: folder() of a scene that
+  /// was made of this text and name, in another process or where the working directory has changed since.
+  static Scene parse(const Library& library, std::string_view text, const std::string& name, const std::string& folder);
   Scene(const Scene& other);
   Scene& operator=(const Scene& other);
   Scene(Scene&&) noexcept;
@@ -65,13 +68,15 @@ class Scene {
   /// formulation that can, one thread evaluates all. \param count 1: no other thread; at most 256 \throws
   /// study::InputError where it is none of these
   Scene& threads(std::size_t count);
-  /// Checks it. \throws as above.
+  /// Checks it, and that a run of it can begin, as the program's command `check` does. \throws as above.
   void check() const;
 
   /// What the scene was read from, and what was changed since, in its order: to make the same scene elsewhere.
   [[nodiscard]] const std::string& text() const;
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] const std::vector<std::string>& changes() const;  ///< "path=value"
+  /// Where relative names of other files begin, whatever the working directory has become since.
+  [[nodiscard]] const std::string& folder() const;
   /// Everything as it was written and set, without defaults, as JSON text: a scene again.
   /// \throws SceneError where the text or what was set cannot be understood
   [[nodiscard]] std::string values() const;
@@ -108,7 +113,8 @@ class Scene {
   /// The linear model of small motions about the scene's initial state: A, B, C, D with names and units.
   /// \param inputs loads of the type input, hinges whose efforts are inputs, or "all"; empty: every input load or,
   /// where there is none, every hinge \param outputs names or their beginnings; empty: the scene's, or all \param lock
-  /// hinges that are held \throws SimulationStopped where the mass matrix of what is free is singular
+  /// hinges that are held \throws SimulationStopped where the mass matrix of what is free is singular, or something is
+  /// not finite
   [[nodiscard]] std::string linearize(const std::vector<std::string>& inputs = {},
                                       const std::vector<std::string>& outputs = {},
                                       const std::vector<std::string>& lock = {}) const;

@@ -8,6 +8,7 @@
 #include "withy/results/result_columns.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/prepared.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy::host {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 std::shared_ptr<const study::Prepared> with_one_formulation(const Scene& scene) {
   std::shared_ptr<const study::Prepared> prepared = scene.prepare();
   study::check_one_formulation(*prepared, "a simulation that is stepped");
+  study::check_integrator(*prepared);
   return prepared;
 }
 

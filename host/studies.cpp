@@ -67,8 +67,7 @@ std::string Scene::compare(const std::vector<std::string>& formulations, const s
   const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
   std::vector<study::Unfit> left_out;
   const std::vector<std::string> chosen =
-      formulations.empty() ? study::usual_formulations(base->scene.model, library().registry(), left_out)
-                           : formulations;
+      formulations.empty() ? study::usual_formulations(base->scene, library().registry(), left_out) : formulations;
   std::vector<ComparisonAt> compared;
   compared.push_back({{},
                       study::compare(
@@ -123,7 +122,10 @@ std::string Scene::linearize(const std::vector<std::string>& inputs, const std::
   try {
     return json_line(linear_model_json(at, study::linear_model(at, {inputs, outputs})));
   } catch (const std::domain_error& e) {
-    throw SimulationStopped("singular", e.what(), base->scene.initial.time);
+    // A law may also fail where it is differenced.
+    const study::NotFinite found = study::not_finite(at, at.state());
+    const char* status = found.failed ? "load-failed" : found.text.empty() ? "singular" : "diverged";
+    throw SimulationStopped(status, found.text.empty() ? e.what() : found.text, base->scene.initial.time);
   }
 }
 

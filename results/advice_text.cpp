@@ -227,6 +227,7 @@ std::string advice_text(const AdviceReport& report) {
               fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));
   lines.add("measured", fmt::format("{} probes, {:.2g} s of CPU time of the {:.2g} allowed, against {}",
                                     a.probes.size(), a.cpu_seconds, a.limit_seconds, a.yardstick->reference.text()));
+  if (!a.until.empty()) lines.add("measured", a.until);
   if (a.models_tried < a.models)
     lines.add("measured",
               fmt::format("{} of {} models: the time was over, there may be a cheaper one", a.models_tried, a.models));

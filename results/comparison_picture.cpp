@@ -61,10 +61,24 @@ std::pair<Eigen::Index, Eigen::Index> plane_of(const std::vector<std::vector<Vec
   return widest_plane(low, high);
 }
 
-/// The tree of every run in the middle of the longest of them, or where the run ended before.
+/// The first output of a run at or behind a time; the end where it ended before.
+std::vector<State>::const_iterator output_at(const study::ComparedRun& run, double time) {
+  constexpr double one_time = 1e-9;  // of itself: times that differ by less are one
+  return std::find_if(run.outputs.begin(), run.outputs.end(),
+                      [&](const State& s) { return s.time >= time - one_time * std::abs(time); });
+}
+
+/// When the trees are seen: "2.2 s", of outputs at several times "2.2 to 2.5 s".
+std::string times_text(const std::vector<double>& times) {
+  const auto [first, last] = std::minmax_element(times.begin(), times.end());
+  return brief(*first) + (brief(*first) == brief(*last) ? "" : " to " + brief(*last)) + " s";
+}
+
+/// The tree of every run at its first output in the second half of all, or where the run ended before.
 Panel tree_panel(const std::vector<const study::ComparedRun*>& runs) {
-  double end = 0;
-  for (const study::ComparedRun* run : runs) end = std::max(end, run->outputs.back().time);
+  const auto [begin, end] = run_times(runs);
+  const double middle = begin + (end - begin) / 2;
+  std::vector<double> times;
   Panel panel{"", "", {std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()}, {}, 380};
   panel.equal = true;
   std::pair<Eigen::Index, Eigen::Index> plane{-1, -1};
@@ -72,8 +86,8 @@ Panel tree_panel(const std::vector<const study::ComparedRun*>& runs) {
     const Scene& scene = runs[k]->prepared.scene;
     Drawing drawing(scene.model, scene.formulation->terms());
     const auto& outputs = runs[k]->outputs;
-    const auto shown =
-        std::find_if(outputs.begin(), outputs.end(), [end](const State& s) { return s.time >= end / 2 * (1 - 1e-9); });
+    const auto shown = output_at(*runs[k], middle);
+    if (shown != outputs.end()) times.push_back(shown->time);
     const auto lines = drawing.lines(shown != outputs.end() ? shown->y : outputs.back().y);
     if (plane.first < 0) plane = plane_of(lines);
     for (const std::vector<Vector3>& line : lines) {
@@ -90,7 +104,7 @@ Panel tree_panel(const std::vector<const study::ComparedRun*>& runs) {
     }
   }
   const char axes[] = "xyz";
-  panel.x_label = std::string(1, axes[plane.first]) + " [m], at " + brief(end / 2) + " s or where the run stopped";
+  panel.x_label = std::string(1, axes[plane.first]) + " [m], at " + times_text(times) + " or where the run stopped";
   panel.y_label = std::string(1, axes[plane.second]) + " [m]";
   return panel;
 }

@@ -12,24 +12,37 @@
 
 namespace withy {
 
+/// What is drawn of runs, and what is not.
+struct DrawnRuns {
+  Picture picture;                            ///< a legend with one name a run; no panels where nothing changes
+  std::size_t columns = 0;                    ///< drawn
+  std::size_t telling = 0;                    ///< that might be: more where nobody named any and these are too many
+  std::vector<std::string> left_out;          ///< names of runs without a number in these columns
+  [[nodiscard]] std::string count() const;    ///< "8 of 36 columns"
+  [[nodiscard]] std::string remarks() const;  ///< lines that say what is not drawn
+};
+
 class PlottedRuns {
  public:
   /// Reads the tables. \param given folders of runs and tables, and all else is a name of columns
   /// \throws study::InputError where no run is among them; ResultsError, std::system_error
   explicit PlottedRuns(const std::vector<std::string>& given);
-  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }    ///< of columns; may be empty
-  [[nodiscard]] const std::vector<std::string>& legend() const { return legend_; }  ///< one a run
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  ///< of columns; may be empty
   /// The file to draw into: as it was given, or where that is empty plot.svg in the first folder.
   /// \throws study::InputError where it is one of the tables
   [[nodiscard]] std::filesystem::path picture(const std::string& given) const;
-  /// A panel a column over time; or one of all columns over these places [m], as envelope_panel. Empty where nothing
-  /// changes. \throws ResultsError where no run has such a column
-  [[nodiscard]] std::vector<Panel> panels(const std::vector<double>& over) const;
+  /// A panel a column over time; or one of all columns over these places [m], as envelope_panel.
+  /// \throws ResultsError where no run has such a column
+  [[nodiscard]] DrawnRuns drawn(const std::vector<double>& over) const;
 
  private:
   std::vector<std::filesystem::path> files_;
   std::vector<std::unique_ptr<DecimatedTable>> tables_;
-  std::vector<std::string> names_, legend_;
+  std::vector<std::string> names_;
 };
+
+/// Names of tables as a legend has them: a run's is its folder, with as many of the folders around it as tell those of
+/// one name apart: "time_scale=1.0/quadratic", "time_scale=1.2/quadratic".
+std::vector<std::string> run_names(const std::vector<std::filesystem::path>& tables);
 
 }  // namespace withy

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "withy/results/svg_parts.hpp"
+#include "withy/results/utf8.hpp"
 
 namespace withy {
 namespace {
@@ -20,7 +21,8 @@ constexpr std::size_t enough_marks = 3;
 constexpr double plot_width = 860;
 constexpr double least_left = 88;  ///< of the axes: label and marks of y stand there
 constexpr double right = 24;
-constexpr double foot = 52;  ///< below each panel: marks and label of its axis
+constexpr double foot = 52;     ///< below each panel: marks and label of its axis
+constexpr double heading = 20;  ///< above a panel whose label of y is too long to stand beside it
 
 /// From data to the picture, for one panel whose upper edge is at `top`. Ends are logarithms on an axis in decades.
 struct Scale {
@@ -42,8 +44,7 @@ struct Scale {
 
 /// Whether numbers in this range are one but for rounding: no axis is to be read that closely.
 bool is_rounding(double low, double high) {
-  constexpr double rounding = 1e-13;
-  return !(high - low > rounding * std::max(std::abs(low), std::abs(high)));
+  return !(high - low > rounding_in_pictures * std::max(std::abs(low), std::abs(high)));
 }
 
 Scale scale_of(const Panel& panel, double left, double top) {
@@ -98,6 +99,26 @@ double left_of(const std::vector<Panel>& panels) {
   return left;
 }
 
+/// How long a label is [px]: an average character is 7 wide at this size.
+double length_of(const std::string& label) { return 7 * static_cast<double>(code_points(label).size()); }
+
+/// Whether a panel's label of y would run into those of the panels beside it.
+bool has_heading(const Panel& panel) { return length_of(panel.y_label) > panel.height + foot; }
+
+/// Along the axis, or above the panel in letters that are as small as its width asks for.
+void draw_y_label(std::string& out, const Panel& panel, const Scale& s) {
+  constexpr double letters = 13;
+  if (!has_heading(panel)) {
+    fmt::format_to(std::back_inserter(out),
+                   "<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                   s.top + s.height / 2, escaped(panel.y_label));
+    return;
+  }
+  const double size = letters * std::min(1.0, (plot_width - s.left - right) / length_of(panel.y_label));
+  fmt::format_to(std::back_inserter(out), "<text x=\"{}\" y=\"{}\" font-size=\"{:.3g}\">{}</text>\n", s.left, s.top - 7,
+                 size, escaped(panel.y_label));
+}
+
 void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
   const double left = s.left, bottom = s.top + s.height;
   const std::vector<double> x_marks = s.x_marks(), y_marks = s.y_marks();
@@ -118,10 +139,10 @@ void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
   }
   fmt::format_to(std::back_inserter(out),
                  "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n"
-                 "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n"
-                 "<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                 "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
                  left, s.top, plot_width - left - right, s.height, (left + plot_width - right) / 2, bottom + 38,
-                 escaped(panel.x_label), s.top + s.height / 2, escaped(panel.y_label));
+                 escaped(panel.x_label));
+  draw_y_label(out, panel, s);
 }
 
 void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen& p) {
@@ -153,6 +174,16 @@ void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen&
 }
 
 }  // namespace
+
+void append_in_decades(Curve& curve, double x, double y, double least) {
+  if (!(y > least)) {
+    if (!curve.x.empty() && (curve.behind_gaps.empty() || curve.behind_gaps.back() < curve.x.size()))
+      curve.behind_gaps.push_back(curve.x.size());
+    return;
+  }
+  curve.x.push_back(x);
+  curve.y.push_back(y);
+}
 
 std::vector<double> axis_marks(double low, double high) {
   // Numbers of marks are counted in doubles: below that the next mark would be the same one.
@@ -209,10 +240,11 @@ std::string svg_plot(const std::string& title, const std::vector<std::string>& l
   const SvgLegend entries = svg_legend(legend, left, plot_width, 47);
   double top = entries.bottom + 25;
   double height = top + 8;
-  for (const Panel& panel : panels) height += panel.height + foot;
+  for (const Panel& panel : panels) height += panel.height + foot + (has_heading(panel) ? heading : 0);
   std::string out = svg_begin(plot_width, height, left, title);
   out += entries.text;
   for (std::size_t i = 0; i < panels.size(); ++i) {
+    if (has_heading(panels[i])) top += heading;
     const Scale s = scale_of(panels[i], left, top);
     draw_axes(out, panels[i], s);
     fmt::format_to(std::back_inserter(out),

@@ -50,6 +50,12 @@ struct Picture {
 };
 inline std::string svg_plot(const Picture& p) { return svg_plot(p.title, p.legend, p.panels); }
 
+/// Adds a point to a curve over an axis in decades. What is no more than `least` is zero but for rounding: it has no
+/// place there, and a line from it to the next point would tell of courses that nobody knows, so that it leaves a gap.
+void append_in_decades(Curve& curve, double x, double y, double least);
+/// Of two numbers that are one but for rounding, the difference over the greater at most.
+inline constexpr double rounding_in_pictures = 1e-13;
+
 /// Round numbers inside [low, high], five or so, for the marks of an axis.
 std::vector<double> axis_marks(double low, double high);
 

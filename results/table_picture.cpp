@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <set>
 
 #include "withy/results/csv.hpp"
 #include "withy/results/results_error.hpp"
@@ -15,6 +14,12 @@ namespace {
 
 /// Panels where nothing in particular is asked for.
 constexpr std::size_t most_panels = 8;
+
+/// As tables have it: ratios have one in files of text, and none in others.
+std::string shown_unit(const Column& column) { return column.unit.empty() ? "1" : column.unit; }
+
+/// Metres of one run and radians of another are two quantities, whatever their name.
+bool same_quantity(const Column& a, const Column& b) { return a.name == b.name && shown_unit(a) == shown_unit(b); }
 
 bool asked(const std::string& full, const std::string& given) {
   const std::string column = column_name(full), name = column_name(given);
@@ -55,7 +60,7 @@ std::pair<double, double> table_times(const std::vector<NamedTable>& runs) {
 
 Panel panel_of_column(const std::vector<NamedTable>& runs, const Column& column) {
   const bool angle = column.unit == "rad";
-  const std::string unit = angle ? "deg" : (column.unit.empty() ? "1" : column.unit);
+  const std::string unit = angle ? "deg" : shown_unit(column);
   Panel panel{"t [s]", column_name(column.name) + " [" + unit + "]", {}, {}};
   panel.x_range = table_times(runs);
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -63,7 +68,7 @@ Panel panel_of_column(const std::vector<NamedTable>& runs, const Column& column)
     const auto& columns = run.table->columns();
     Curve curve;
     for (std::size_t c = 1; c < columns.size(); ++c)
-      if (columns[c].name == column.name) curve = curve_of(*run.table, c, angle ? 180 / std::numbers::pi : 1);
+      if (same_quantity(columns[c], column)) curve = curve_of(*run.table, c, angle ? 180 / std::numbers::pi : 1);
     for (const double y : curve.y) {
       low = std::min(low, y);
       high = std::max(high, y);
@@ -78,10 +83,11 @@ bool changes(const Panel& panel) { return panel.y_range.first < panel.y_range.se
 
 double size_of(const Panel& panel) { return std::max(std::abs(panel.y_range.first), std::abs(panel.y_range.second)); }
 
-/// What a component of a vector is beside: its label without the component.
+/// What a component of a vector is beside: its label without the component, with its unit.
 std::string vector_of(const Panel& panel) {
-  const std::string name = panel.y_label.substr(0, panel.y_label.find(" ["));
-  return name.substr(0, name.find_last_of("._"));
+  const std::size_t unit = panel.y_label.rfind(" [");
+  const std::string name = panel.y_label.substr(0, unit);
+  return name.substr(0, name.find_last_of("._")) + panel.y_label.substr(unit);
 }
 
 /// A component that is rounding beside the others of its vector gets their range: it is zero there.
@@ -109,7 +115,7 @@ std::vector<Column> columns_of(const std::vector<NamedTable>& runs) {
   for (const NamedTable& run : runs) {
     for (std::size_t c = 1; c < run.table->columns().size(); ++c) {
       const Column& column = run.table->columns()[c];
-      if (std::none_of(all.begin(), all.end(), [&](const Column& k) { return k.name == column.name; }))
+      if (std::none_of(all.begin(), all.end(), [&](const Column& k) { return same_quantity(k, column); }))
         all.push_back(column);
     }
   }
@@ -139,6 +145,9 @@ Panel envelope_panel(const std::vector<NamedTable>& runs, const std::vector<std:
   std::vector<Panel> of_columns;
   for (const std::string& name : columns) {
     const std::vector<Column> found = asked_for(all, name);
+    if (found.size() > 1 && found[0].name == found[1].name)
+      throw ResultsError(in_quotes(name) + " is in " + shown_unit(found[0]) + " in one run and in " +
+                         shown_unit(found[1]) + " in another; need runs with one unit");
     if (found.size() > 1) throw ResultsError(in_quotes(name) + " is several columns; need one at each place");
     of_columns.push_back(panel_of_column(runs, found.front()));
     const std::string& label = of_columns.back().y_label;
@@ -170,25 +179,31 @@ Panel envelope_panel(const std::vector<NamedTable>& runs, const std::vector<std:
   return envelope;
 }
 
-std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names) {
+std::vector<Column> telling_columns(const std::vector<NamedTable>& runs) {
   const std::vector<Column> all = columns_of(runs);
-  std::vector<Panel> panels;
-  std::set<std::string> shown;  // names may have columns in common, as "slide" and "slide.rate"
-  for (const std::string& name : names)
-    for (const Column& column : asked_for(all, name))
-      if (shown.insert(column.name).second) panels.push_back(panel_of_column(runs, column));
-  if (!names.empty()) {
-    widen_rounding(panels);
-    return panels;
-  }
+  std::vector<Column> found;
   for (const bool most : {true, false}) {
-    for (const Column& column : all) {
-      if (most != tells_most(column)) continue;
-      Panel panel = panel_of_column(runs, column);
-      if (changes(panel) && panels.size() < most_panels) panels.push_back(std::move(panel));
-    }
-    if (!panels.empty()) break;
+    for (const Column& column : all)
+      if (most == tells_most(column) && changes(panel_of_column(runs, column))) found.push_back(column);
+    if (!found.empty()) break;
   }
+  return found;
+}
+
+std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names) {
+  std::vector<Column> shown;
+  if (names.empty()) {
+    shown = telling_columns(runs);
+    shown.resize(std::min(shown.size(), most_panels));
+  } else {
+    const std::vector<Column> all = columns_of(runs);
+    for (const std::string& name : names)
+      for (const Column& column : asked_for(all, name))  // names may have columns in common, as "slide", "slide.rate"
+        if (std::none_of(shown.begin(), shown.end(), [&](const Column& k) { return same_quantity(k, column); }))
+          shown.push_back(column);
+  }
+  std::vector<Panel> panels;
+  for (const Column& column : shown) panels.push_back(panel_of_column(runs, column));
   widen_rounding(panels);
   return panels;
 }

@@ -16,11 +16,15 @@ struct NamedTable {
   const DecimatedTable* table;
 };
 
-/// A panel a column over time, a curve a run in each that has the column; angles in degrees.
-/// \param names of columns, or what stands before a dot in them: "link1.tip" is all of that tip; empty: the coordinates
-/// of hinges and the deflections of tips that change, or whatever changes where none of these does. A column that
-/// several of the names mean is drawn once, where the first of them has it. \throws ResultsError where no run has such
-/// a column: it names the nearest
+/// The coordinates of hinges and the deflections of tips that change in a run, or whatever changes where none of these
+/// does.
+std::vector<Column> telling_columns(const std::vector<NamedTable>& runs);
+
+/// A panel a column over time, a curve a run in each that has the column; angles in degrees. Columns of one name in
+/// several units have a panel each.
+/// \param names of columns, or what stands before a dot in them: "link1.tip" is all of that tip; empty: the first
+/// eight of telling_columns(). A column that several of the names mean is drawn once, where the first of them has it.
+/// \throws ResultsError where no run has such a column: it names the nearest
 std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names);
 
 /// The least and the greatest that each of the columns has in a run, over the place [m] that it is given: an envelope,

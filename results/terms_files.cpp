@@ -61,13 +61,14 @@ Picture terms_picture(const std::string& title, const study::TermSizes& ledger) 
     Panel panel{"time [s]", ledger.groups[g].name + " [N/sqrt(kg)]", {1e-6 * top, top}, {}};
     panel.log_y = true;
     if (!ledger.times.empty()) panel.x_range = {ledger.times.front(), ledger.times.back()};
-    for (const std::size_t k : shown) {
+    for (std::size_t pen = 0; pen < shown.size(); ++pen) {
+      const std::size_t k = shown[pen];
       Curve curve;
-      for (std::size_t i = 0; i < ledger.times.size(); ++i) {
-        curve.x.push_back(ledger.times[i]);
-        curve.y.push_back(std::max(ledger.sizes[g][k][i], 1e-300));
-      }
-      panel.curves.push_back(std::move(curve));
+      curve.pen = pen;
+      // Terms are differences of sums as large as the greatest: what is rounding beside it is none.
+      for (std::size_t i = 0; i < ledger.times.size(); ++i)
+        append_in_decades(curve, ledger.times[i], ledger.sizes[g][k][i], rounding_in_pictures * top);
+      if (!curve.x.empty()) panel.curves.push_back(std::move(curve));
     }
     panels.push_back(std::move(panel));
   }

@@ -110,11 +110,11 @@ std::string threshold_picture(const std::string& title, const std::vector<study:
     }
     Curve curve;
     curve.pen = pen;
-    for (std::size_t k = 0; k < row.errors.size() && std::isfinite(row.errors[k]); ++k) {
-      curve.x.push_back(range.values[k]);
-      curve.y.push_back(std::max(100 * row.errors[k], 1e-12));
-    }
-    curve.ends_early = !curve.x.empty() && curve.x.size() < row.errors.size();
+    // An error that is the rounding of the two that are compared is none.
+    std::size_t k = 0;
+    for (; k < row.errors.size() && std::isfinite(row.errors[k]); ++k)
+      append_in_decades(curve, range.values[k], 100 * row.errors[k], 100 * rounding_in_pictures);
+    curve.ends_early = !curve.x.empty() && k < row.errors.size();
     panels[m].curves.push_back(std::move(curve));
   }
   for (Panel& panel : panels) {

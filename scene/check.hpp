@@ -51,13 +51,14 @@ struct SceneNames {
 class Checker {
  public:
   Checker(const Document& document, Registry& registry, Diagnostics& diagnostics)
-      : document_(document), registry_(registry), diagnostics_(diagnostics) {}
+      : document_(document), registry_(registry), diagnostics_(diagnostics), directory_(document.directory_now()) {}
 
   /// The same checks with another place to report to, of what is not remembered.
   Checker(const Checker& like, Diagnostics& diagnostics)
       : document_(like.document_),
         registry_(like.registry_),
         diagnostics_(diagnostics),
+        directory_(like.directory_),
         names_(like.names_),
         sources_(like.sources_) {}
 
@@ -98,7 +99,7 @@ class Checker {
   Registry& registry() const { return registry_; }
   Diagnostics& diagnostics() const { return diagnostics_; }
   /// For what the document's values are made into.
-  MakeContext make_context() const { return {registry_, diagnostics_, document_.directory}; }
+  MakeContext make_context() const { return {registry_, diagnostics_, directory_}; }
   /// suggestion() where it is cheap or among the first: of a thousand wrong names nobody reads what each may have
   /// meant, and among thousands of candidates it takes long to say.
   std::string suggest(std::string_view name, const std::vector<std::string>& candidates) const;
@@ -146,6 +147,7 @@ class Checker {
   const Document& document_;
   Registry& registry_;
   Diagnostics& diagnostics_;
+  std::string directory_;  ///< where relative names of files begin
   const SceneNames* names_ = nullptr;
   mutable SceneSources* sources_ = nullptr;
   SceneParts* parts_ = nullptr;

@@ -288,6 +288,15 @@ bool has_input(int file) {
 
 }  // namespace
 
+std::string whole(const std::string& directory) {
+  std::error_code none;
+  return (std::filesystem::current_path(none) / directory).string();
+}
+
+std::string Document::directory_now() const {
+  return whole_directory.empty() || whole(directory) == whole_directory ? directory : whole_directory;
+}
+
 Place Document::key_place(const std::string& path) const {
   for (std::string p = path; !p.empty(); p.erase(p.find_last_of('/'))) {
     if (const auto it = keys.find(p); it != keys.end()) return {it->second.line, it->second.column, path};

@@ -25,6 +25,11 @@ struct Document {
   Value root;
   std::unordered_map<std::string, Place> keys;  ///< by path: where the key of a value stands
   std::string directory = {};                   ///< of its file; empty: the working directory
+  std::string whole_directory = {};             ///< the same, whatever the working directory is; empty: not known
+
+  /// Where relative names of files begin: the folder as messages name it, `directory`, where that is still the one that
+  /// it was when the document was read; else the whole of it.
+  [[nodiscard]] std::string directory_now() const;
 
   /// Where the key of the value at `path` stands, or else of the nearest ancestor that has one.
   [[nodiscard]] Place key_place(const std::string& path) const;
@@ -42,6 +47,9 @@ struct Origin {
 /// exceeds the limits.
 /// \returns false where what was read is not to be relied on; lesser problems are reported and read over.
 bool read_document(std::string_view text, const Origin& origin, Document& document, Diagnostics& diagnostics);
+
+/// A folder from the root on, by the working directory as it is; as it is given where there is none.
+std::string whole(const std::string& directory);
 
 /// The bytes of a file. \throws std::system_error where it cannot be read, is larger than DocumentLimits::bytes
 /// (EFBIG), or is a pipe into which nobody writes (ETIMEDOUT).

@@ -92,11 +92,16 @@ std::string_view without_blanks(std::string_view path) {
 SceneValues SceneValues::read(const std::string& file) { return parse(read_bytes(file), file); }
 
 SceneValues SceneValues::parse(std::string_view text, const std::string& name) {
+  return parse(text, name, whole(std::filesystem::path(name).parent_path().string()));
+}
+
+SceneValues SceneValues::parse(std::string_view text, const std::string& name, const std::string& folder) {
   SceneValues values;
   values.file_ = name;
   values.text_ = text;
   values.sha256_ = withy::sha256(text);
   values.document_.directory = std::filesystem::path(name).parent_path().string();
+  values.document_.whole_directory = folder;
   if (!read_document(text, {}, values.document_, values.diagnostics_))
     throw SceneError(name, values.diagnostics_.errors());
   lengthen_choices(values.document_.root);

@@ -26,6 +26,9 @@ class SceneValues {
   static SceneValues read(const std::string& file);
   /// The same from text. `name` stands for the file in messages; relative names of other files begin at its folder.
   static SceneValues parse(std::string_view text, const std::string& name);
+  /// The same where that folder is known from the root on: `name` may be one that only the folder has that was the
+  /// working directory when the text was read.
+  static SceneValues parse(std::string_view text, const std::string& name, const std::string& folder);
 
   /// Puts a value at a path of keys with dots between them, as "bodies.link1.length" or "gravity.1", and makes the maps
   /// on the way that are missing. An element of a vector that is not there is put into its default. Bodies, hinges,

@@ -28,6 +28,26 @@ RunSummary confirm(Evaluator& evaluator, const Point& choice) {
                   options, {});
 }
 
+/// Where events end the run of the scene, its time is over: what comes after has other ranges, which the run never
+/// goes through, and costs what it never does. The time is that in `quadratic`, and one for all models, though each
+/// meets the event at its own: what they are measured against has to last as long as they do. \returns Advice::until
+std::string end_at_stop(Evaluator& evaluator) {
+  const Prepared& base = evaluator.base();
+  const auto stops = [](const RunEvent& event) { return event.stops; };
+  if (std::none_of(base.scene.events.begin(), base.scene.events.end(), stops)) return {};
+  const ModelAt quadratic = model_at(base, evaluator.registry(), {"quadratic", "", 0, "", 0, {}, {}});
+  if (quadratic.refused()) return {};
+  const Prepared& model = *quadratic.prepared;
+  RunOptions options = run_options(model.scene);
+  options.interrupted = evaluator.control().interrupted;
+  const RunSummary run =
+      simulate(model.model(), *model.equations, *base.scene.integrator, model.scene.initial, options, {});
+  if (!run.ended_by_event || !(run.reached > model.scene.initial.time)) return {};
+  evaluator.end_at(run.reached);
+  return fmt::format("event '{}' ends the run at {:.4g} s, and everything is measured up to there",
+                     run.events.empty() ? "" : run.events.back().name, run.reached);
+}
+
 /// 20 times the CPU time of the scene's run in `quadratic` [s], or 10 s if that is more. A run that is clearly longer
 /// than the share of it that is looked at is judged by that share.
 double time_limit(Evaluator& evaluator) {
@@ -40,7 +60,7 @@ double time_limit(Evaluator& evaluator) {
   const Walk w = walk(model, *evaluator.base().scene.integrator, {on, afford, evaluator.control().interrupted});
   if (w.end != Walk::End::cut) return std::max(least, runs * w.seconds);
   const double start = model.scene.initial.time, gone = w.time - start;
-  return gone > 0 ? std::max(least, runs * w.seconds * (end_of_run(model.scene) - start) / gone) : least;
+  return gone > 0 ? std::max(least, runs * w.seconds * (evaluator.end() - start) / gone) : least;
 }
 
 /// Fills the advice of a search that has a choice.
@@ -102,6 +122,8 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   accuracy.require_something_of(evaluator.outputs());
   require_a_run(scene);
   Advice advice;
+  advice.until = end_at_stop(evaluator);
+  if (finding && !advice.until.empty()) finding(advice.until);
   advice.limit_seconds = seconds ? *seconds : time_limit(evaluator);
   evaluator.limit(search_share * advice.limit_seconds);
   if (finding)

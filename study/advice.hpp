@@ -20,14 +20,17 @@ struct Advice {
   std::optional<Yardstick> yardstick;  ///< none where no reference is exact enough
   std::string trouble;                 ///< why there is none
   std::optional<Reference> nearest;    ///< then the finest there is, if any
-  std::vector<Probe> probes;           ///< in their order
-  std::optional<Probe> choice;         ///< none where no candidate holds the accuracy
-  std::vector<Probe> above;            ///< one step above the choice: a formulation that neglects less, a mode more
-  RunSummary confirmed;                ///< the choice, run as a scene that says so is
-  StepLimit steps;                     ///< of that run
-  std::vector<Indicator> indicators;   ///< the same
-  double cpu_seconds = 0;              ///< of the search
-  double limit_seconds = 0;            ///< what it may cost
+  /// Where an event ends the run of the scene before its time, which and when, in a sentence without its full stop:
+  /// everything is measured up to there. Else empty.
+  std::string until;
+  std::vector<Probe> probes;          ///< in their order
+  std::optional<Probe> choice;        ///< none where no candidate holds the accuracy
+  std::vector<Probe> above;           ///< one step above the choice: a formulation that neglects less, a mode more
+  RunSummary confirmed;               ///< the choice, run as a scene that says so is
+  StepLimit steps;                    ///< of that run
+  std::vector<Indicator> indicators;  ///< the same
+  double cpu_seconds = 0;             ///< of the search
+  double limit_seconds = 0;           ///< what it may cost
   std::size_t models = 0, models_tried = 0;  ///< of the candidates; fewer tried: the time was over
   bool interrupted = false;                  ///< the user ended the search: there is no advice
 };

@@ -186,7 +186,7 @@ bool YardstickSearch::affordable(const Walk& so_far, double whole) {
   const Scene& scene = evaluator_.base().scene;
   evaluator_.control().tell(evaluator_.spent(), evaluator_.limit());
   pace_.note(so_far.time - scene.initial.time, so_far.seconds);
-  double rest = pace_.rest(end_of_run(scene) - scene.initial.time);
+  double rest = pace_.rest(evaluator_.end() - scene.initial.time);
   if (so_far.seconds < whole) rest = std::min(rest, whole - so_far.seconds);
   return may_go_on(so_far.seconds, rest, left() + so_far.seconds);
 }
@@ -210,7 +210,7 @@ void YardstickSearch::explain(const ReferenceFound& found) {
   for (double& limit : closely) limit *= policy::most_reference_use;
   const double agree = agree_until(evaluator_.outputs(), r.readings, r.coarser, closely);
   const bool long_enough =
-      agree - scene.initial.time > policy::worth_looking_at * (end_of_run(scene) - scene.initial.time);
+      agree - scene.initial.time > policy::worth_looking_at * (evaluator_.end() - scene.initial.time);
   const std::string& worst = evaluator_.outputs().list()[yardstick.worst(r.own)].label;
   const char* const there_was_time = found.unaffordable ? " that there was time for" : "";
   const std::string known =

@@ -10,6 +10,7 @@
 #include "withy/study/candidates.hpp"
 #include "withy/study/common_velocity.hpp"
 #include "withy/study/formulation_meaning.hpp"
+#include "withy/study/vibrations_followed.hpp"
 
 namespace withy::study {
 namespace {
@@ -156,6 +157,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.more_modes = std::move(evidence.more_modes);
   c.steps = step_limit(prepared, summary, registry);
   c.indicators = indicators(scene, summary, last != nullptr ? std::optional(last->terms) : std::nullopt);
+  if (const auto vibrates = vibrations_followed(scene, equations, summary)) add(c, *vibrates);
   c.rounding = add_rounding(c.indicators, prepared.model(), equations, summary.final);
   add_neglected(c, scene, last != nullptr ? last->terms : scene.formulation->terms());
   add_common_velocity(c, part_of_common_velocity(prepared, evidence.beyond, summary));

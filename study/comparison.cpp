@@ -60,11 +60,17 @@ Comparison compare(const SceneValues& values, Registry& registry, const std::vec
   const auto found = std::find(all.begin(), all.end(), reference);
   c.reference = static_cast<std::size_t>(found - all.begin());
   if (found == all.end()) all.push_back(reference);
+  // What cannot be is said before anything is run.
+  std::vector<Prepared> scenes;
   for (const std::string& formulation : all) {
     SceneValues chosen = values;
     chosen.choose_formulation(formulation, "the formulation '" + formulation + "' of the comparison");
-    ComparedRun run{prepare(std::move(chosen), registry), {}, {}};
-    if (c.runs.empty()) static_cast<void>(measured(c, run));  // bad names are said before anything is run
+    scenes.push_back(prepare(std::move(chosen), registry));
+    check_integrator(scenes.back());
+  }
+  for (Prepared& scene : scenes) {
+    ComparedRun run{std::move(scene), {}, {}};
+    if (c.runs.empty()) static_cast<void>(measured(c, run));  // and so are bad names
     run.summary = simulator(run.prepared, [&](const State& s) { run.outputs.push_back(s); });
     c.runs.push_back(std::move(run));
     if (c.interrupted()) break;

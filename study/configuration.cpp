@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "withy/core/model/event_plan.hpp"
@@ -12,6 +13,7 @@
 #include "withy/core/model/limit_sensor.hpp"
 #include "withy/core/plugin/digital_part.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/renewal.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
@@ -221,8 +223,31 @@ std::vector<std::string> at_limits(const Configuration& c, const State& state) {
 
 }  // namespace
 
+NotFinite not_finite(const Configuration& c, const State& state) {
+  const Model& model = c.prepared().model();
+  for (const LoadNode& load : model.loads()) {
+    const auto* law = dynamic_cast<const ForeignLaw*>(load.load.get());
+    if (law == nullptr) continue;
+    const std::string words = law->failure(load.discrete(std::span(state.y)));
+    if (!words.empty()) return {fmt::format("load '{}': {}", load.name, words), true};
+  }
+  return {describe_nonfinite(model, *c.prepared().equations, state, 0)};
+}
+
+Eigen::VectorXd accelerations_of(const Configuration& c) {
+  try {
+    return withy::accelerations(c.dynamics(), c.state(), c.held());
+  } catch (const std::domain_error&) {
+    if (const NotFinite found = not_finite(c, c.state()); !found.text.empty()) throw std::domain_error(found.text);
+    throw;
+  }
+}
+
 std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
   if (steady.converged) return {};
+  // What is left over is no number where a load gives none.
+  if (const NotFinite found = not_finite(c, steady.state); !found.text.empty())
+    return "no steady state was found: " + found.text;
   std::string text = fmt::format("no steady state was found: after {} steps of Newton's method ", steady.iterations);
   std::size_t worst = 0;
   double left = 0;

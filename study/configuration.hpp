@@ -70,6 +70,17 @@ Spin read_spin(const Model& model, const std::string& hinge, const std::string& 
 /// \throws OptionError of `spin`, InputError
 Holding read_holding(const Model& model, const std::vector<std::string>& lock, const std::vector<std::string>& spin);
 
+/// What is not finite at a state, in a clause, and whether that is a law which has failed where it runs.
+struct NotFinite {
+  std::string text;  ///< empty: all is finite
+  bool failed = false;
+};
+NotFinite not_finite(const Configuration& configuration, const State& state);
+
+/// Accelerations at the configuration's state, those of held speeds as for `withy::accelerations`.
+/// \throws std::domain_error where something is not finite, which it names, or the mass matrix is singular
+Eigen::VectorXd accelerations_of(const Configuration& configuration);
+
 /// Why there is no steady state, in a sentence or two; empty where there is one.
 std::string no_steady_state(const Configuration& configuration, const SteadyState& steady);
 /// How the derivatives were found: exact, or numerical for loads that are named.

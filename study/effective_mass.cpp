@@ -31,8 +31,7 @@ EffectiveMasses effective_masses(const Configuration& c) {
     P.row(i) = Eigen::Map<const Eigen::RowVector3d>(seen->energies().linear_momentum.data());
     speeds[free[static_cast<std::size_t>(i)]] = 0;
   }
-  const Tangents t =
-      c.dynamics().tangents(c.state().time, c.state().y, accelerations(c.dynamics(), c.state(), c.held()));
+  const Tangents t = c.dynamics().tangents(c.state().time, c.state().y, accelerations_of(c));
   const Eigen::MatrixXd M = t.mass(free, free), K = t.by_position(free, free);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(0.5 * (K + K.transpose()),
                                                                         0.5 * (M + M.transpose()));

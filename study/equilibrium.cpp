@@ -16,7 +16,8 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
   found.derivatives = derivatives_text(tangents);
   // The rate of change at this angle may vanish where weight is at its greatest: a turn tells.
   const TurningModes turn = turning_modes(c, state, {});
-  found.stays = stays_steady(c.dynamics(), tangents, state, c.held()) && turn.check.steady && turn.uneven.empty();
+  found.stays = stays_steady(c.dynamics(), tangents, state, c.held()) && turn.check.steady && turn.uneven.empty() &&
+                turn.timed.empty();
   found.problem = no_steady_state(c, found.steady);
   for (const Tip& tip : measured_ends(c.prepared().model())) {
     if (tip.flexible)
@@ -31,9 +32,10 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
     return found;
   }
   found.passing = moving_freely(c, state);
-  found.instant = !found.passing.empty() || !turn.uneven.empty();
+  found.instant = !found.passing.empty() || !turn.uneven.empty() || !turn.timed.empty();
   found.changing = !found.passing.empty() ? passing_text(found.passing)
                    : !turn.uneven.empty() ? uneven_text(turn.uneven)
+                   : !turn.timed.empty()  ? timed_text(turn.timed)
                    : slides(c.dynamics(), state)
                        ? "Hinges slide and what acts on the free coordinates changes on the way: this state is steady "
                          "at this place alone."

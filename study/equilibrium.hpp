@@ -21,7 +21,7 @@ struct Equilibrium {
   std::string changing;                ///< why it does not stay, and what to do; empty where it does
   std::vector<std::string> passing;    ///< hinges that nothing holds at the rates they have: an instant of a motion
   std::optional<Stability> stability;  ///< none where nothing is free to move, or the state is none that stays
-  bool instant = false;                ///< of a motion of such hinges, or of one that is prescribed and changes
+  bool instant = false;                ///< of a motion of such hinges, of a prescribed one or a load that changes
   std::string derivatives;             ///< how they were found
   std::vector<std::pair<std::string, std::array<double, 3>>> deflections;  ///< of flexible bodies' tips [m]
   std::string bent;                    ///< by how much and by what, where that is far; else empty

@@ -37,7 +37,9 @@ struct ErrorEstimate {
 /// What an estimate may cost.
 enum class Price {
   tenth,  ///< of the run, by counts of evaluations and what they were measured to take: the same on every machine
-  any     ///< as many evaluations of the pair as the run had of its own, at tolerances that resolve its motion
+  any     ///< as many evaluations of the pair as the run had of its own, at tolerances that resolve its motion; where
+          ///< these end elsewhere than the run, three times as many at a hundredth of them, and where those do too
+          ///< nothing is estimated: the motion is sensitive
 };
 
 /// An estimate, or why there is none.

@@ -141,6 +141,23 @@ std::string physical_cause(const Prepared& prepared, const RunSummary& summary) 
   return text;
 }
 
+/// "1.8/s, vibrating at 25 rad/s, most by damping of load 'servo' on shoulder.0": the small motion about a state that
+/// grows fastest. Empty where none grows within a time [s], and where there are no derivatives.
+std::string growth_at(const TangentDynamics& dynamics, const State& state, double lasted) {
+  const Model& model = dynamics.model();
+  FastestPole pole;
+  try {
+    pole = growing_pole(dynamics, state, driven_speeds(model, state));
+  } catch (const std::domain_error&) {
+    return {};
+  }
+  if (!(pole.value.real() * lasted > 1)) return {};
+  return fmt::format("{:.3g}/s{}, most by {}{}", pole.value.real(),
+                     pole.value.imag() > 0 ? fmt::format(", vibrating at {:.3g} rad/s", pole.value.imag()) : "",
+                     pole.cause.empty() ? "forces" : pole.cause,
+                     pole.of_load_state() ? "" : " on " + model.layout().speed_names[pole.speed]);
+}
+
 }  // namespace
 
 std::string growth_text(const Prepared& prepared, const RunSummary& summary) {
@@ -149,19 +166,17 @@ std::string growth_text(const Prepared& prepared, const RunSummary& summary) {
                         summary.status == RunStatus::inaccurate;
   if (!may_grow || model.layout().speeds > largest_examined) return {};
   if (!loops_of(model).empty()) return physical_cause(prepared, summary);  // tangents are a tree's
-  try {
-    const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
-    const FastestPole pole = growing_pole(dynamics, summary.final, driven_speeds(model, summary.final));
-    const double lasted = summary.reached - prepared.scene.initial.time;
-    if (!(pole.value.real() * lasted > 1)) return physical_cause(prepared, summary);
-    return fmt::format(
-        " About the state at t = {:.4g} s small motions grow by {:.3g}/s{}, most by {}{}.{}", summary.final.time,
-        pole.value.real(), pole.value.imag() > 0 ? fmt::format(", vibrating at {:.3g} rad/s", pole.value.imag()) : "",
-        pole.cause.empty() ? "forces" : pole.cause,
-        pole.of_load_state() ? "" : " on " + model.layout().speed_names[pole.speed], physical_cause(prepared, summary));
-  } catch (const std::domain_error&) {
-    return physical_cause(prepared, summary);  // there are no derivatives at that state
-  }
+  const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
+  const State& start = prepared.scene.initial;
+  const double lasted = summary.reached - start.time;
+  std::string text;
+  // The last state may be far from where the motion began to grow, bent over and turning.
+  if (summary.final.time > start.time)
+    if (const std::string first = growth_at(dynamics, start, lasted); !first.empty())
+      text = fmt::format(" Already at the start small motions grew by {}.", first);
+  if (const std::string last = growth_at(dynamics, summary.final, lasted); !last.empty())
+    text += fmt::format(" About the state at t = {:.4g} s small motions grow by {}.", summary.final.time, last);
+  return text + physical_cause(prepared, summary);
 }
 
 }  // namespace withy::study

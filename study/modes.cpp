@@ -90,9 +90,12 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
       at.steady->derivatives = derivatives_text(tangents);
     }
     at.turn = turning_modes(c, state, wish);
-    if (!as_is && (!at.turn->check.steady || !at.turn->uneven.empty())) at.steady->stays = false;
+    if (as_is) at.turn->timed.clear();  // nobody has said that the state stays
+    if (!as_is && (!at.turn->check.steady || !at.turn->uneven.empty() || !at.turn->timed.empty()))
+      at.steady->stays = false;
   } catch (const std::domain_error& e) {
-    at.problem = e.what();
+    const NotFinite found = not_finite(c, state);
+    at.problem = found.text.empty() ? e.what() : found.text;
   }
   return at;
 }

@@ -58,8 +58,9 @@ struct ModesAt {
 
   /// The mode on a branch; null where there is none.
   [[nodiscard]] const Mode* on(std::size_t branch) const;
-  /// Whether these are modes of equations that change as the hinges turn, frozen at one angle: they tell no stability.
-  [[nodiscard]] bool frozen() const { return turn && turn->check.periodic(); }
+  /// Whether these are modes of equations that change as the hinges turn, frozen at one angle, or about a balance of
+  /// loads that change with time: they tell no stability.
+  [[nodiscard]] bool frozen() const { return turn && (turn->check.periodic() || !turn->timed.empty()); }
 };
 
 /// One formulation, all values.

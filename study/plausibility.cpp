@@ -6,18 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 
 #include "withy/core/model/closing.hpp"
-#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/measured_place.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/fast_course.hpp"
+#include "withy/study/held_places.hpp"
 #include "withy/study/step_limit.hpp"
 #include "withy/study/tip_moments.hpp"
 #include "withy/study/varying_sections.hpp"
+#include "withy/study/written_angles.hpp"
 
 namespace withy::study {
 namespace {
@@ -27,13 +27,6 @@ namespace {
 constexpr double short_enough = 100, heavy_enough = 1e4;
 /// Damping ratio of a servo over what it drives beyond which the inertia is remarked on.
 constexpr double stiff_enough = 10;
-
-/// The place of a member of a member of the scene, or of the scene.
-Place place_of(const Scene& scene, const char* group, const std::string& name) {
-  const Value* all = scene.source.find(group);
-  const Value* one = all != nullptr ? all->find(name) : nullptr;
-  return one != nullptr ? one->place() : scene.source.place();
-}
 
 double mass_of_body(const Body& body) {
   double mass = 0;
@@ -75,7 +68,7 @@ void look_at_bodies(const Prepared& prepared, std::vector<Remark>& all) {
     const BodyNode& node = model.bodies()[b];
     if (node.segment && node.segment->index > 0) continue;
     const std::string& name = node.segment ? node.segment->whole : node.name;
-    const Place place = place_of(prepared.scene, "bodies", name);
+    const Place place = place_in_scene(prepared.scene, "bodies", name);
     for (const std::string& remark : node.body->remarks()) all.push_back({place, remark});
     const ModalShape& shape = node.body->shape();
     if (shape.modes() == 0 || !(shape.length > 0) || node.segment) continue;
@@ -88,22 +81,6 @@ void look_at_bodies(const Prepared& prepared, std::vector<Remark>& all) {
     if (own * heavy_enough < masses[b])
       all.push_back({place, fmt::format("a flexible body of {} kg carries {} kg: are its length and its mass meant?",
                                         brief(own), brief(masses[b]))});
-  }
-}
-
-/// Bodies of modes that leave an edge or some nodes at the root at rest, held elsewhere: these stay at rest against
-/// each other. A section of a slender body is one with its root.
-void look_at_held_places(const Prepared& prepared, std::vector<Remark>& all) {
-  for (const HingeNode& hinge : prepared.model().hinges()) {
-    const BodyNode& node = prepared.model().bodies()[static_cast<std::size_t>(hinge.child)];
-    if (node.body->shape().modes() == 0 || node.body->cut(0)) continue;
-    const Frame& held = node.frames[static_cast<std::size_t>(hinge.child_frame)];
-    const PointExpansion root = *node.body->station(std::string("root"));
-    if (held.section.X == root.X || (held.section.phi.isZero(0) && held.section.psi.isZero(0))) continue;
-    all.push_back({place_of(prepared.scene, "hinges", hinge.name),
-                   fmt::format("holds '{}' at '{}', where its modes move; they are those of the body held at its root "
-                               "and leave all that is clamped there undeformed: hold it at its root",
-                               node.name, held.name)});
   }
 }
 
@@ -130,14 +107,32 @@ std::vector<double> driven_inertia(const Prepared& prepared) {
   return inertia;
 }
 
-/// Feedback d on a rate and k on its coordinate: the pole −d/h where the inertia h is far below that which the gains
-/// are for, d ≈ 2 √(k h).
+/// Feedback of a servo: k on a coordinate and d on its rate.
+struct Feedback {
+  double stiffness, damping;
+};
+
+/// Of a `pd-controller` on one of its hinges, or of a continuous `pid` on the hinge that it measures too; nothing where
+/// gains follow a schedule, or where the derivative is filtered or held over samples: its pole is another one then.
+std::optional<Feedback> feedback_of(const Value& gains, const std::string& hinge, bool pid) {
+  const auto number = [&](const char* key) {
+    const Value* given = gains.find(key);
+    return given != nullptr && given->kind() == Value::Kind::number ? given->number() : 0.0;
+  };
+  if (!pid) return Feedback{number("stiffness"), number("damping")};
+  const Value* of = gains.find("of");
+  const bool measures = of == nullptr || (of->items().size() == 1 && of->items()[0].text() == hinge);
+  if (!measures || gains.has("to") || number("sample") > 0 || number("filter") > 0) return {};
+  return Feedback{number("proportional"), number("derivative")};
+}
+
+/// The pole −d/h where the inertia h is far below that which the gains are for, d ≈ 2 √(k h).
 void look_at_servo(const Prepared& prepared, const std::vector<double>& inertia, const std::string& hinge,
-                   const Value& gains, std::vector<Remark>& all) {
-  const Value *stiffness = gains.find("stiffness"), *damping = gains.find("damping");
+                   const Value& gains, bool pid, std::vector<Remark>& all) {
+  const std::optional<Feedback> feedback = feedback_of(gains, hinge, pid);
   const Slot* slot = prepared.model().layout().hinge(hinge);
-  if (stiffness == nullptr || damping == nullptr || slot == nullptr || slot->speeds != 1) return;
-  const double h = inertia[slot->speed], k = stiffness->number(), d = damping->number();
+  if (!feedback || slot == nullptr || slot->speeds != 1) return;
+  const double h = inertia[slot->speed], k = feedback->stiffness, d = feedback->damping;
   if (!(h > 0) || !(k > 0) || d < 2 * stiff_enough * std::sqrt(k * h)) return;
   all.push_back(
       {gains.place(), fmt::format("the servo on '{}' drives an inertia of {} alone: damping {} over it makes a pole "
@@ -154,10 +149,12 @@ void look_at_servos(const Prepared& prepared, std::vector<Remark>& all) {
   for (const auto& [name, load] : loads->members()) {
     const Value* type = load.find("type");
     const Value* hinges = load.find("hinges");
-    if (type == nullptr || (type->text() != "pd-controller" && type->text() != "pid")) continue;
-    if (const Value* hinge = load.find("hinge")) look_at_servo(prepared, inertia, hinge->text(), load, all);
-    if (hinges == nullptr) continue;
-    for (const auto& [hinge, gains] : hinges->members()) look_at_servo(prepared, inertia, hinge, gains, all);
+    if (type == nullptr) continue;
+    const Value* hinge = load.find("hinge");
+    if (type->text() == "pid" && hinge != nullptr) look_at_servo(prepared, inertia, hinge->text(), load, true, all);
+    if (type->text() != "pd-controller" || hinges == nullptr) continue;
+    for (const auto& [name_of_hinge, gains] : hinges->members())
+      look_at_servo(prepared, inertia, name_of_hinge, gains, false, all);
   }
 }
 
@@ -201,58 +198,6 @@ void look_at_frames(const Prepared& prepared, std::vector<Remark>& all) {
   }
 }
 
-/// An angle as it was written without a unit: radians beyond a turn. Whoever means them mostly writes a multiple of pi,
-/// so `whole` asks for a whole multiple of five as well.
-void look_at_angle(const Value& angle, bool whole, std::vector<Remark>& all) {
-  if (angle.kind() != Value::Kind::number) return;
-  const double x = angle.number();
-  if (!(std::abs(x) > 2 * std::numbers::pi) || (whole && std::remainder(x, 5) != 0)) return;
-  all.push_back({angle.place(), fmt::format("an angle of {0} rad is {1} turns: a number without a unit is in radians; "
-                                            "are degrees meant? Then write \"{0} deg\"",
-                                            brief(x), brief(x / (2 * std::numbers::pi)))});
-}
-
-/// Angles of orientations, wherever they stand.
-void look_at_orientations(const Value& value, std::vector<Remark>& all) {
-  if (const Value* angle = value.find("angle"); angle != nullptr && value.has("axis"))
-    look_at_angle(*angle, false, all);
-  if (const Value* angles = value.find("xyz"))
-    for (const Value& angle : angles->items()) look_at_angle(angle, false, all);
-  for (const Value& item : value.items()) look_at_orientations(item, all);
-  for (const auto& [name, member] : value.members()) look_at_orientations(member, all);
-}
-
-/// Angles that a hinge is to take: `options` are those of a load, a motion or a state for this hinge.
-void look_at_hinge_angles(const Prepared& prepared, const std::string& hinge, const Value& options,
-                          std::vector<Remark>& all) {
-  for (const HingeNode& node : prepared.model().hinges()) {
-    const std::vector<HingeRate> rates = hinge_rates(*node.hinge);
-    if (node.name != hinge || rates.size() != 1 || !rates.front().angular) continue;
-    for (const char* key : {"from", "to", "target", "lower", "upper", "free_position"})
-      if (const Value* angle = options.find(key)) look_at_angle(*angle, true, all);
-    if (const Value* position = options.find("position")) {
-      look_at_angle(*position, true, all);  // a number alone
-      for (const Value& angle : position->items()) look_at_angle(angle, true, all);
-    }
-  }
-}
-
-/// Degrees that were written as if a scene counted in them.
-void look_at_angles(const Prepared& prepared, std::vector<Remark>& all) {
-  const Value& root = prepared.values.root();
-  look_at_orientations(root, all);
-  const auto of_hinges = [&](const Value& owner) {
-    const Value *one = owner.find("hinge"), *several = owner.find("hinges");
-    if (one != nullptr && one->kind() == Value::Kind::text) look_at_hinge_angles(prepared, one->text(), owner, all);
-    if (several == nullptr) return;
-    for (const auto& [hinge, options] : several->members()) look_at_hinge_angles(prepared, hinge, options, all);
-  };
-  for (const char* group : {"loads", "motions"})
-    if (const Value* owners = root.find(group))
-      for (const auto& [name, owner] : owners->members()) of_hinges(owner);
-  if (const Value* initial = root.find("initial")) of_hinges(*initial);
-}
-
 /// Bodies that begin bent beyond what a run goes on with.
 void look_at_start(const Prepared& prepared, std::vector<Remark>& all) {
   const Scene& scene = prepared.scene;
@@ -262,7 +207,7 @@ void look_at_start(const Prepared& prepared, std::vector<Remark>& all) {
     const double share = std::hypot(d[0], d[1], d[2]) / tip.length;
     if (!(share > scene.deflection_limit)) continue;
     all.push_back(
-        {place_of(scene, "bodies", tip.body),
+        {place_in_scene(scene, "bodies", tip.body),
          fmt::format("the scene begins with {} of '{}' deflected by {} times its length, beyond what a run goes on "
                      "with (limits.deflection, {}){}",
                      MeasuredPlace{tip.station, {}}.in_words(), tip.body, brief(share), brief(scene.deflection_limit),
@@ -275,16 +220,22 @@ void look_at_start(const Prepared& prepared, std::vector<Remark>& all) {
 
 }  // namespace
 
+Place place_in_scene(const Scene& scene, const char* group, const std::string& name) {
+  const Value* all = scene.source.find(group);
+  const Value* one = all != nullptr ? all->find(name) : nullptr;
+  return one != nullptr ? one->place() : scene.source.place();
+}
+
 std::vector<Remark> implausible(const Prepared& prepared, Registry& registry) {
   std::vector<Remark> all;
   look_at_bodies(prepared, all);
-  look_at_held_places(prepared, all);
+  look_at_held_places(prepared, registry, all);
   look_at_tip_moments(prepared, registry, all);
   look_at_varying_sections(prepared, registry, all);
   look_at_servos(prepared, all);
   look_at_steps(prepared, all);
   look_at_frames(prepared, all);
-  look_at_angles(prepared, all);
+  look_at_written_angles(prepared, registry, all);
   look_at_start(prepared, all);
   std::stable_sort(all.begin(), all.end(),
                    [](const Remark& a, const Remark& b) { return a.place.line < b.place.line; });

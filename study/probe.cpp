@@ -97,7 +97,9 @@ const ModelAt& Evaluator::model(const Point& point) {
   const ModelAt* const alike = plain.same_model(point) ? nullptr : &model(plain);
   models_.push_back(std::make_unique<ModelAt>(
       model_at(base_, registry_, point, alike != nullptr && !alike->refused() ? alike : nullptr)));
-  return *models_.back();
+  ModelAt& made = *models_.back();
+  if (end_ && made.prepared) made.prepared->scene.end = *end_;
+  return made;
 }
 
 Probe Evaluator::run(const Point& point, const Yardstick& yardstick, const Allowance& allowance) {

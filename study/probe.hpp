@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,10 @@ class Evaluator {
   [[nodiscard]] Registry& registry() const { return registry_; }
   [[nodiscard]] const Outputs& outputs() const { return outputs_; }
   [[nodiscard]] const Control& control() const { return control_; }
+  /// Ends all runs of the scene there [s], and not at its own end. To be said before any model is made.
+  void end_at(double time) { end_ = time; }
+  /// Of all runs [s].
+  [[nodiscard]] double end() const { return end_ ? *end_ : end_of_run(base_.scene); }
   /// Made once, kept as long as this.
   const ModelAt& model(const Point& point);
   /// Runs the point until its allowance is used up. It passes where error and the reference's own together keep within
@@ -94,6 +99,7 @@ class Evaluator {
   std::map<std::string, double> unit_costs_;  ///< by point [s an evaluation]
   double began_;
   double limit_ = std::numeric_limits<double>::infinity();
+  std::optional<double> end_;
 };
 
 }  // namespace withy::study

@@ -74,6 +74,21 @@ std::string motion_remedy(const Prepared& prepared, const NonfiniteMotion& motio
       placed_name(prepared, "motions", motion.name), 0.99 * motion.time);
 }
 
+/// Where kinematics is exact and a deflection past the scene's limit ended the run: nothing says that the motion itself
+/// breaks down there. Empty where something else ended it.
+std::string limit_remedy(const Prepared& prepared, const RunSummary& summary) {
+  // The words of the run itself (core/simulation/monitor_deflections.cpp), which no other end has.
+  if (prepared.scene.formulation->terms().strain != StrainOrder::exact ||
+      summary.message.find(" times its length (limit") == std::string::npos)
+    return {};
+  const double limit = prepared.scene.deflection_limit;
+  return fmt::format(
+      " What to do: where the body may bend so far, let the run go on: limits.deflection is {0:g} of a body's length "
+      "(--set limits.deflection={1:g}), and exact kinematics holds at any deflection. If it ends again at a larger "
+      "one, the motion itself grows: look at the scene's loads, gains and stiffness (withy check).",
+      limit, 3 * limit);
+}
+
 /// Whether a run of steps that nobody controls ended where steps are beyond what the integrator is stable to; then also
 /// what has to be said of them, empty where the run's message does.
 std::optional<std::string> unstable_steps(const Prepared& prepared, const RunSummary& summary) {
@@ -115,12 +130,7 @@ std::string bent_remedy(const Prepared& prepared, const RunSummary& summary) {
   constexpr double small = 0.1;
   double most = 0;
   for (const auto& [body, ratio] : summary.peak_deflection_ratio) most = std::max(most, ratio);
-  if (!(most > small)) return {};
-  if (prepared.scene.formulation->terms().strain == StrainOrder::exact)
-    return fmt::format(
-        " What to do: where bodies may bend so far, allow it (--set limits.deflection={:g}); if the motion grows all "
-        "the same, look at loads, gains and stiffness (withy check).",
-        std::ceil(3 * prepared.scene.deflection_limit));
+  if (!(most > small) || prepared.scene.formulation->terms().strain == StrainOrder::exact) return {};
   return fmt::format(
       " What to do: run it with --formulation exact, which no deflection limits: bodies were bent by {:.2g} of their "
       "length, and beyond a tenth no other formulation holds. If that ends the same way the motion itself grows, or "
@@ -173,14 +183,15 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   // Before any model: what grows in such steps tells nothing of it.
   if (summary.status == RunStatus::diverged)
     if (const std::optional<std::string> steps = unstable_steps(prepared, summary)) return *steps + shorter_steps;
+  if (summary.status == RunStatus::diverged)
+    if (std::string text = limit_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::step_underflow)
     if (const Value* least = least_step(prepared.scene, summary.reached))
       return fmt::format(" What to do: let min_step be smaller: it is {:g} s, and time could be told apart farther.",
                          least->number());
   if (bends && leaves_something_out(terms))
     return " What to do: run it with --formulation quadratic, which leaves out less, or exact where bodies bend by "
-           "more "
-           "than a tenth of their length; if that ends the same way it is the model and not the formulation.";
+           "more than a tenth of their length; if that ends the same way it is the model and not the formulation.";
   if (summary.status == RunStatus::diverged && bends)
     if (std::string text = bent_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::singular)

@@ -229,18 +229,24 @@ std::string why_it_grew(const Prepared& prepared, const RunSummary& summary) {
 
 }  // namespace
 
+void check_integrator(const Prepared& prepared) {
+  const Scene& scene = prepared.scene;
+  try {
+    static_cast<void>(scene.integrator->start(*prepared.equations, scene.initial));
+  } catch (const std::invalid_argument& e) {
+    const Place& place = scene.source.at("integrator").place();
+    throw SceneError(scene.file, {{{place.line, place.column, "/integrator"}, e.what()}}, prepared.values.origins());
+  }
+}
+
 void check_start(const Prepared& prepared) {
   const Scene& scene = prepared.scene;
   const auto refuse = [&](const Place& place, std::string why) {
     throw SceneError(scene.file, {{place, std::move(why)}}, prepared.values.origins());
   };
+  check_integrator(prepared);
   const Value& integrator = scene.source.at("integrator");
   const Place chosen{integrator.place().line, integrator.place().column, "/integrator"};
-  try {
-    static_cast<void>(scene.integrator->start(*prepared.equations, scene.initial));
-  } catch (const std::invalid_argument& e) {
-    refuse(chosen, e.what());
-  }
   if (const auto rate = unsolvable_rate(prepared.model(), *prepared.equations, scene.initial)) {
     const std::string& name = prepared.model().hinges()[rate->hinge].name;
     const Value* hinge = scene.source.at("hinges").find(name);  // null: of a segment

@@ -40,6 +40,9 @@ struct CertifiedRun {
   Certificate certificate;
 };
 
+/// Refuses an integrator that cannot treat these equations. \throws SceneError with its place
+void check_integrator(const Prepared& prepared);
+
 /// Refuses what no run can begin with: a tolerance below what the mass matrix leaves to be had, a start at which that
 /// is singular, an integrator that cannot treat these equations. \throws SceneError with its place
 void check_start(const Prepared& prepared);

@@ -67,7 +67,7 @@ SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> senso
   push_ = model_->loads().back().slot.first;
   state_.y.insert(state_.y.begin() + static_cast<std::ptrdiff_t>(push_), model_->layout().speeds, 0.0);
 
-  accelerations_ = withy::accelerations(dynamics_, c.state(), c.held());
+  accelerations_ = accelerations_of(c);
   const Tangents tangents = dynamics_.tangents(c.state().time, c.state().y, accelerations_);
   derivatives_ = derivatives_text(tangents);
   FirstOrderForm form = whole_first_order_form(tangents, c.held());

@@ -8,6 +8,7 @@
 
 #include "withy/core/analysis/between_instants.hpp"
 #include "withy/core/model/columns.hpp"
+#include "withy/study/timed_loads.hpp"
 
 namespace withy::study {
 namespace {
@@ -149,6 +150,9 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
       for (const std::size_t m : uneven_motions(c.dynamics(), steady, c.held()))
         result.uneven.push_back(c.prepared().model().motions()[m].name);
     if (!result.check.steady) result.passing = moving_freely(c, steady);
+    // Where hinges turn, a turn has told: a craft may turn with the axes of its orbit, and nothing changes.
+    const bool still = result.check.turning.period == 0 && result.check.turning.problem.empty();
+    if (wish.period == 0 && still) result.timed = timed_loads(c, steady);
     if (!wish.floquet && !wish.blades) return result;
     const Turning& turning = result.check.turning;
     if (turning.period == 0) {
@@ -217,12 +221,21 @@ std::string uneven_text(const std::vector<std::string>& motions) {
       many ? "they rest" : "it rests");
 }
 
+std::string timed_text(const std::vector<std::string>& loads) {
+  const bool many = loads.size() > 1;
+  return fmt::format(
+      "The load{} '{}' change{} with time, whatever moves, and what is free feels it: this is balanced at this instant "
+      "and no state that stays. Take {} away (--set loads.{}=null), or choose the time that is meant (--at).",
+      many ? "s" : "", fmt::join(loads, "', '"), many ? "" : "s", many ? "them" : "it", loads.front());
+}
+
 std::string turn_text(const TurningModes& turn) {
   constexpr const char* no_stability = " Growth and decay are those of this instant and tell no stability.";
   const TurnCheck& check = turn.check;
   const Turning& turning = check.turning;
   if (!turn.passing.empty()) return passing_text(turn.passing) + no_stability;
   if (!turn.uneven.empty()) return uneven_text(turn.uneven) + no_stability;
+  if (!turn.timed.empty()) return timed_text(turn.timed) + no_stability;
   if (!turning.problem.empty())
     return check.periodic()
                ? fmt::format(

@@ -50,6 +50,9 @@ struct TurningModes {
   /// Motions that do not go on at the rate they have, of hinges that what is free feels, where no period is given: an
   /// instant likewise.
   std::vector<std::string> uneven;
+  /// Loads that are functions of time themselves and act on what is free, where nothing turns and no period is given:
+  /// an instant likewise.
+  std::vector<std::string> timed;
   std::string problem;        ///< why there are no exponents; empty where there are
   std::string blade_problem;  ///< why no blades are seen; empty where they are, or nobody asked
 };
@@ -72,6 +75,8 @@ std::string turn_text(const TurningModes& turn);
 std::vector<std::string> moving_freely(const Configuration& configuration, const State& state);
 /// That a state does not stay with motions that do not go on at the rates they have, and what to do.
 std::string uneven_text(const std::vector<std::string>& motions);
+/// That a state does not stay with loads that change with time themselves, and what to do.
+std::string timed_text(const std::vector<std::string>& loads);
 /// That a state with such hinges does not stay, and what to do.
 std::string passing_text(const std::vector<std::string>& hinges);
 

@@ -20,8 +20,7 @@ std::vector<Unfit> take_out_unfit(const std::shared_ptr<const Model>& model, Reg
                                   std::vector<std::string>& formulations);
 
 /// What a comparison is of where nobody says it: of ruthless, inconsistent, consistent and quadratic those that can
-/// treat the model. \param left_out gets the others
-std::vector<std::string> usual_formulations(const std::shared_ptr<const Model>& model, Registry& registry,
-                                            std::vector<Unfit>& left_out);
+/// treat the scene's model and that its integrator can treat. \param left_out gets the others
+std::vector<std::string> usual_formulations(const Scene& scene, Registry& registry, std::vector<Unfit>& left_out);
 
 }  // namespace withy::study

@@ -31,7 +31,7 @@ ExitStatus compare(const CompareArguments& arguments) {
   ComparisonQuestion question{arguments.formulations, arguments.reference, arguments.outputs, variation};
   std::vector<study::Unfit> left_out;
   if (question.formulations.empty())
-    question.formulations = study::usual_formulations(given.model, plugins.registry(), left_out);
+    question.formulations = study::usual_formulations(given, plugins.registry(), left_out);
   const auto provenance = [&](const Scene& scene) { return provenance_of(scene, plugins); };
   const auto folder = take_folder(arguments, "compare", provenance(given), comparison_content(question));
   const std::vector<ComparisonAt> groups =

@@ -19,26 +19,27 @@ struct PlotArguments {
 
 ExitStatus plot(const PlotArguments& arguments) {
   const PlottedRuns runs(arguments.given);
-  const std::vector<std::string>& legend = runs.legend();
   if (!arguments.over.empty() && arguments.over.size() != runs.names().size()) {
     complain("--over has " + std::to_string(arguments.over.size()) + " places for " +
              std::to_string(runs.names().size()) + " columns; need one each");
     return ExitStatus::bad_input;
   }
-  const std::vector<Panel> panels = runs.panels(arguments.over);
-  if (panels.empty()) {
+  const DrawnRuns drawn = runs.drawn(arguments.over);
+  if (drawn.picture.panels.empty()) {
     complain("nothing changes in what was recorded: name the columns to draw");
     return ExitStatus::bad_input;
   }
   if (arguments.terminal) {
-    print(terminal_plot(legend, panels));
+    print(terminal_plot(drawn.picture.legend, drawn.picture.panels) + drawn.remarks());
     return ExitStatus::done;
   }
   const std::filesystem::path out = runs.picture(arguments.out);
-  write_picture(out, svg_plot(legend.size() == 1 ? legend.front() : "", legend, panels));
-  const std::size_t count = panels.size();
-  print(arguments.json ? json_text({{"file", out.string()}, {"columns", count}})
-                       : std::to_string(count) + (count == 1 ? " column in " : " columns in ") + out.string() + '\n');
+  write_picture(out, svg_plot(drawn.picture));
+  print(arguments.json ? json_text({{"file", out.string()},
+                                    {"columns", drawn.columns},
+                                    {"of_columns", drawn.telling},
+                                    {"left_out", drawn.left_out}})
+                       : drawn.count() + " in " + out.string() + '\n' + drawn.remarks());
   return ExitStatus::done;
 }
 

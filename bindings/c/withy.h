@@ -75,6 +75,7 @@ WITHY_API withy_status withy_scene_copy(withy_scene* scene, withy_scene** copy);
  * reported when the scene is needed, together with every other problem. */
 WITHY_API withy_status withy_scene_set(withy_scene* scene, const char* path, const char* text);
 WITHY_API withy_status withy_scene_set_number(withy_scene* scene, const char* path, double value);
+/** Checks it, and that a run of it can begin, as the program's command `check` does. */
 WITHY_API withy_status withy_scene_check(withy_scene* scene);
 
 /** Simulates to the end of the scene. WITHY_OK also where the run ends badly: ask withy_result_status. */

@@ -7,10 +7,8 @@
 
 #include "withy/core/model/held_numbers.hpp"
 #include "withy/core/model/hosted_motion.hpp"
-#include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/plugin/just_before.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
-#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy::fmi {
 namespace {
@@ -173,110 +171,12 @@ std::span<const double> Dynamics::derivatives() {
   return std::span(y_dot_).first(states_);
 }
 
-const std::vector<double>& Dynamics::outputs() {
-  if (row_ != nullptr) return *row_;
-  const std::vector<double>& row = table_.row(seen());
-  const auto bad = std::find_if(row.begin(), row.end(), [](double x) { return !std::isfinite(x); });
-  if (bad != row.end())
-    throw Discarded("t = " + brief(state_.time) + " s: output '" +
-                    table_.columns()[static_cast<std::size_t>(bad - row.begin())].name + "' is not finite");
-  row_ = &row;
-  return row;
-}
-
-/// Where the state as seen goes where that of the host goes along a direction: a quaternion of any length along the
-/// unit sphere.
-std::vector<double> Dynamics::seen_along(std::span<const double> along_states) const {
-  std::vector<double> along(along_states.begin(), along_states.end());
-  if (along.empty()) return along;
-  for (std::size_t h = 0; h < model().hinges().size(); ++h) {
-    const Slot& slot = model().layout().hinges[h];
-    const auto count = static_cast<Eigen::Index>(slot.positions);
-    if (slot.positions == slot.speeds) continue;
-    const Eigen::Map<const Eigen::VectorXd> x(&state_.y[slot.position], count);
-    Eigen::Map<Eigen::VectorXd> v(&along[slot.position], count);
-    const double length = v.norm();
-    if (length == 0) continue;
-    const auto scaled = [&](double step) {
-      Eigen::VectorXd y = x + step * v;
-      model().hinges()[h].hinge->normalize({y.data(), slot.positions});
-      return y;
-    };
-    v = central_difference(scaled, 0.01 / length).eval();
-  }
-  return along;
-}
-
-State Dynamics::moved(double h, std::span<const double> along_states, std::span<const std::size_t> inputs,
-                      std::span<const double> along_inputs) {
-  State state = seen();
-  for (std::size_t i = 0; i < along_states.size(); ++i) state.y[i] += h * along_states[i];
-  if (quaternions_) equations_.normalize(state.y);
-  for (std::size_t k = 0; k < inputs.size(); ++k) {
-    const LoadNode& node = model().loads()[inputs[k]];
-    const InputPort& port = *node.load->input();
-    const std::span<double> held = node.discrete(std::span(state.y));
-    port.set(state.time, state.time, port.value(state.time, held) + h * along_inputs[k], held);
-  }
-  return state;
-}
-
-void Dynamics::differences(std::span<const double> along_states, std::span<const std::size_t> inputs,
-                           std::span<const double> along_inputs, std::span<const std::size_t> columns,
-                           std::span<double> values) {
-  double longest = 0, place = 0;
-  for (std::size_t i = 0; i < along_states.size(); ++i) {
-    longest = std::max(longest, std::abs(along_states[i]));
-    if (along_states[i] != 0) place = std::max(place, std::abs(state_.y[i]));
-  }
-  if (longest == 0)
-    for (const double rate : along_inputs) longest = std::max(longest, std::abs(rate));
-  if (longest == 0) return std::fill(values.begin(), values.end(), 0.0);
-  const double h = 1e-3 * (1 + 1e-3 * place) / longest;
-  row_ = nullptr;
-  const auto at = [&](double step) {
-    const std::vector<double>& row = table_.row(moved(step, along_states, inputs, along_inputs));
-    Eigen::VectorXd numbers(static_cast<Eigen::Index>(columns.size()));
-    for (std::size_t c = 0; c < columns.size(); ++c) numbers[static_cast<Eigen::Index>(c)] = row[columns[c]];
-    return numbers;
-  };
-  const Eigen::VectorXd found = refined_difference(at, h);
-  if (!found.allFinite()) throw Discarded("t = " + brief(state_.time) + " s: an output has no finite derivative");
-  std::copy(found.begin(), found.end(), values.begin());
-}
-
-void Dynamics::sensitivity(std::span<const double> along_states, std::span<const std::size_t> inputs,
-                           std::span<const double> along_inputs, std::span<double> derivatives,
-                           std::span<const std::size_t> columns, std::span<double> values) {
-  const std::vector<double> along = seen_along(along_states);
-  along_states = along;
-  if (!columns.empty()) differences(along_states, inputs, along_inputs, columns, values);
-  if (derivatives.empty()) return;
-  std::fill(derivatives.begin(), derivatives.end(), 0.0);
-  if (!along_states.empty()) {
-    const Linearization* linearization = equations_.linearization();
-    if (linearization == nullptr) throw std::invalid_argument(study::why_no_derivatives(*prepared_));
-    static_cast<void>(this->derivatives());
-    if (!jacobian_is_now_ && !linearization->jacobian(state_.time, seen().y, y_dot_, jacobian_).ok())
-      throw Discarded("t = " + brief(state_.time) + " s: the mass matrix cannot be solved");
-    jacobian_is_now_ = true;
-    for (std::size_t j = 0; j < states_; ++j)
-      if (along_states[j] != 0)
-        for (std::size_t i = 0; i < states_; ++i) derivatives[i] += jacobian_[j * states_ + i] * along_states[j];
-  }
-  double longest = 0;
-  for (const double rate : along_inputs) longest = std::max(longest, std::abs(rate));
-  if (longest == 0) return;
-  // Affine: a difference over any step has no error but rounding.
-  const double step = 1 / longest;
-  std::vector<double> sum(states_);
-  for (const double h : {step, -step}) {
-    derivatives_are_now_ = false;
-    if (!evaluate(moved(h, {}, inputs, along_inputs)).ok())
-      throw Discarded("t = " + brief(state_.time) + " s: the mass matrix cannot be solved");
-    for (std::size_t i = 0; i < states_; ++i) sum[i] += (h > 0 ? 1 : -1) * y_dot_[i];
-  }
-  for (std::size_t i = 0; i < states_; ++i) derivatives[i] += sum[i] / (2 * step);
+double Dynamics::output(std::size_t column) {
+  if (row_ == nullptr) row_ = &table_.row(seen());
+  const double value = (*row_)[column];
+  if (!std::isfinite(value))
+    throw Discarded("t = " + brief(state_.time) + " s: output '" + table_.columns()[column].name + "' is not finite");
+  return value;
 }
 
 std::span<const double> Dynamics::event_indicators() {

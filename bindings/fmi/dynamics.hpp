@@ -65,11 +65,11 @@ class Dynamics {
 
   /// ẏ of the moving states. \throws Discarded where there is none.
   std::span<const double> derivatives();
-  /// Of all columns of the tables. \throws Discarded where a sensor has no finite value.
-  const std::vector<double>& outputs();
+  /// A number of the tables. \throws Discarded where it is not finite; others may be none.
+  double output(std::size_t column);
   /// Derivatives of ẏ and of chosen columns along a direction of states and inputs (empty: none of them moves).
-  /// Those of ẏ along states are exact, along inputs too (the equations are affine in them); those of columns are
-  /// central differences of eighth order.
+  /// Those of ẏ along states are exact, along inputs too where ẏ is affine in them; else those along inputs are central
+  /// differences of eighth order, as those of columns are.
   /// \param inputs loads, and `along_inputs` their rates of change
   void sensitivity(std::span<const double> along_states, std::span<const std::size_t> inputs,
                    std::span<const double> along_inputs, std::span<double> derivatives,
@@ -100,6 +100,9 @@ class Dynamics {
   [[nodiscard]] std::vector<double> seen_along(std::span<const double> along_states) const;
   State moved(double h, std::span<const double> along_states, std::span<const std::size_t> inputs,
               std::span<const double> along_inputs);
+  void add_along_states(std::span<const double> along, std::span<double> derivatives);
+  void add_along_inputs(std::span<const std::size_t> inputs, std::span<const double> along_inputs,
+                        std::span<double> derivatives);
   bool switch_where_passed(EventUpdate& update);
   void happen(std::span<const std::size_t> events, EventUpdate& update);
   void happen_where_due(EventUpdate& update);

@@ -274,7 +274,7 @@ void Instance::get(std::span<const std::uint32_t> references, double* values) {
         *values++ = dynamics().derivatives()[v.index];
         break;
       case Variable::Kind::output:
-        *values++ = dynamics().outputs()[v.index];
+        *values++ = dynamics().output(v.index);
         break;
       case Variable::Kind::indicator:
         *values++ = dynamics().indicator(v.index);

@@ -197,7 +197,8 @@ void bind_equations(py::module_& m) {
       .def("jacobian", &E::jacobian, py::arg("t"), py::arg("y"),
            "jacobian(t, y) -> numpy.ndarray\n\nDerivatives [n, n] of derivatives(t, y) with respect to y [n], in SI "
            "units; exact, but for parts that loads leave to differences; with respect to a quaternion along its unit "
-           "sphere.\n\nRaises:\n    SimulationStopped, ValueError: as derivatives() does.")
+           "sphere, but for its own rate, which is linear in all four of its components.\n\nRaises:\n    "
+           "SimulationStopped, ValueError: as derivatives() does.")
       .def("normalize", &E::normalized, py::arg("y"),
            "normalize(y) -> numpy.ndarray\n\ny [n] with its quaternions scaled to unit length, a copy.\n\nRaises:\n"
            "    ValueError: where y has another shape.")

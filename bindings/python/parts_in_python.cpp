@@ -178,7 +178,7 @@ std::unique_ptr<Load> make_python_load(const Value& p, const MakeContext& contex
   const py::object* object = object_of(p, context);
   if (object == nullptr) return nullptr;
   if (p.has("frame")) {
-    for (const char* key : {"of", "to", "hinge", "sample"})
+    for (const char* key : {"of", "to", "hinge", "component", "sample", "delay"})
       if (p.has(key)) {
         context.diagnostics.error(p.at(key).place(), "a load at a frame has none");
         return nullptr;

@@ -21,8 +21,16 @@ using host::LibraryOptions;
 using host::Result;
 using host::Scene;
 
+/// Calls `act` without the interpreter, with a copy of the scene: another thread of Python may set values of the scene
+/// itself meanwhile.
+template <class Act>
+auto of_a_copy(const Scene& scene, const py::object& progress, Act&& act) {
+  const Scene own(scene);
+  return followed(progress, [&](const Follow& follow) { return act(own, follow); });
+}
+
 py::tuple run(const Scene& scene, const py::object& progress) {
-  Result result = followed(progress, [&](const Follow& follow) { return scene.run(follow); });
+  Result result = of_a_copy(scene, progress, [](const Scene& own, const Follow& follow) { return own.run(follow); });
   const auto rows = static_cast<py::ssize_t>(result.rows()), columns = static_cast<py::ssize_t>(result.columns.size());
   const py::object cause = raised_by_load(result.message);
   return py::make_tuple(result.status, result.message, names_of(result.columns), units_of(result.columns),
@@ -77,39 +85,50 @@ void bind_scene(py::module_& m) {
       .def_static("read", &Scene::read)
       .def_static("parse", [](const Library& l, const std::string& text,
                               const std::string& name) { return Scene::parse(l, text, name); })
+      .def_static("parse", [](const Library& l, const std::string& text, const std::string& name,
+                              const std::string& folder) { return Scene::parse(l, text, name, folder); })
       .def("copy", [](const Scene& s) { return Scene(s); })
       .def("set", [](Scene& s, const std::string& path, const std::string& text) { s.set(path, text); })
-      .def("check", &Scene::check)
+      // Of a copy too: a body in Python is asked for its shape, and another thread may have its turn there.
+      .def("check", [](const Scene& s) { Scene(s).check(); })
       .def_property_readonly("text", &Scene::text)
       .def_property_readonly("name", &Scene::name)
       .def_property_readonly("changes", &Scene::changes)
+      .def_property_readonly("folder", &Scene::folder)
       .def("run", &run)
       .def("compare",
            [](const Scene& s, const Names& formulations, const std::string& reference, const Names& outputs,
               const py::object& progress) {
-             return followed(progress, [&](const Follow& f) { return s.compare(formulations, reference, f, outputs); });
+             return of_a_copy(s, progress, [&](const Scene& own, const Follow& f) {
+               return own.compare(formulations, reference, f, outputs);
+             });
            })
       .def("trade",
            [axes](const Scene& s, const Names& outputs, const Names& formulations, const Names& families,
                   const std::vector<int>& modes, const Names& integrators, const std::vector<double>& tolerances,
                   std::size_t jobs, const py::object& progress) {
-             return followed(progress, [&](const Follow& f) {
-               return s.trade(axes(formulations, families, modes, integrators, tolerances), jobs, f, outputs);
+             return of_a_copy(s, progress, [&](const Scene& own, const Follow& f) {
+               return own.trade(axes(formulations, families, modes, integrators, tolerances), jobs, f, outputs);
              });
            })
       .def("advise",
            [axes](const Scene& s, const std::string& accuracy, const Names& outputs, const Names& formulations,
                   const Names& families, const std::vector<int>& modes, const Names& integrators,
                   const std::vector<double>& tolerances, std::optional<double> seconds, const py::object& progress) {
-             return followed(progress, [&](const Follow& f) {
-               return s.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f,
-                               seconds);
+             return of_a_copy(s, progress, [&](const Scene& own, const Follow& f) {
+               return own.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f,
+                                 seconds);
              });
            })
-      .def_property_readonly("values", &Scene::values)
-      .def("linearize", &Scene::linearize, py::call_guard<py::gil_scoped_release>())
+      .def_property_readonly("values", [](const Scene& s) { return Scene(s).values(); })
+      .def("linearize",
+           [](const Scene& s, const Names& inputs, const Names& outputs, const Names& lock) {
+             return of_a_copy(s, py::none(), [&](const Scene& own, const Follow& /*it is short*/) {
+               return own.linearize(inputs, outputs, lock);
+             });
+           })
       .def("modes", [](const Scene& s, const Names& lock, const py::object& progress) {
-        return followed(progress, [&](const Follow& f) { return s.modes(lock, f); });
+        return of_a_copy(s, progress, [&](const Scene& own, const Follow& f) { return own.modes(lock, f); });
       });
 }
 

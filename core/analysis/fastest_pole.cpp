@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "withy/core/analysis/modes.hpp"
+#include "withy/core/analysis/named_parts.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
-#include "withy/core/tangents/load_wrenches.hpp"
-#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy {
 namespace {
@@ -21,111 +20,6 @@ constexpr double little = 0.2;
 
 /// How the cause of a pole begins that is one of a load's own states.
 const std::string state_of_load = "the state of load '";
-
-/// A part of the derivatives that can be named.
-struct Part {
-  std::string name;
-  Eigen::MatrixXd by_position, by_speed;
-  bool of_load = false;
-};
-
-/// Efforts of a load on speeds, those that go by its states too.
-Eigen::VectorXd efforts_of(const Model& model, std::size_t load, double t, std::span<const double> y) {
-  const Layout& layout = model.layout();
-  Eigen::VectorXd efforts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.speeds));
-  const std::span<double> own(efforts.data(), layout.speeds);
-  std::vector<double> scratch(model.load_scratch());
-  model.loads()[load].load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), own, scratch);
-  model.add_state_efforts(t, y, own, scratch, static_cast<int>(load));
-  return efforts;
-}
-
-/// Their derivatives by differences.
-void add_differences(const TangentDynamics& dynamics, std::size_t load, const State& state, Part& part) {
-  const Model& model = dynamics.model();
-  const Eigen::Index n = part.by_speed.rows();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const auto slope = [&](auto&& move) {
-      return refined_difference(
-          [&](double h) {
-            std::vector<double> moved = state.y;
-            move(moved, h);
-            return efforts_of(model, load, state.time, moved);
-          },
-          analysis::difference_step);
-    };
-    part.by_position.col(j) +=
-        slope([&](std::vector<double>& y, double h) { dynamics.displace(y, h * Eigen::VectorXd::Unit(n, j)); });
-    part.by_speed.col(j) += slope(
-        [&](std::vector<double>& y, double h) { y[model.layout().positions + static_cast<std::size_t>(j)] += h; });
-  }
-}
-
-/// Adds what a load's continuous part does by displacements and speeds, where it says so.
-bool add_of_states(const LoadNode& node, const Model& model, const State& state, Part& part) {
-  const Layout& layout = model.layout();
-  const auto slot = std::find_if(layout.continuous_slots.begin(), layout.continuous_slots.end(),
-                                 [&](const LoadSlot& s) { return &model.loads()[s.load] == &node; });
-  if (slot == layout.continuous_slots.end()) return false;
-  const auto n = static_cast<Eigen::Index>(layout.speeds), z = static_cast<Eigen::Index>(slot->count);
-  Eigen::MatrixXd by_state(n, z), rate_by_position(z, n), rate_by_speed(z, n), rate_by_state(z, z);
-  ContinuousDerivatives to{part.by_position, part.by_speed, by_state, rate_by_position, rate_by_speed, rate_by_state};
-  std::vector<double> scratch(model.load_scratch());
-  return node.continuous->add_derivatives(node.view(state.time, state.y, layout, scratch), to);
-}
-
-/// Stiffness and damping of bodies, and what loads do on speeds; the rest last.
-std::vector<Part> parts_of(const TangentDynamics& dynamics, const State& state, const Tangents& tangents) {
-  const Model& model = dynamics.model();
-  const Layout& layout = model.layout();
-  const auto n = static_cast<Eigen::Index>(layout.speeds);
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n);
-  std::vector<Part> parts;
-  Part rest{"inertia and weight", tangents.by_position, tangents.by_speed};
-  const auto take = [&](Part part) {
-    rest.by_position -= part.by_position;
-    rest.by_speed -= part.by_speed;
-    parts.push_back(std::move(part));
-  };
-  for (const BodyNode& body : model.bodies()) {
-    const Slot* slot = layout.body(body.name);
-    if (slot == nullptr) continue;
-    const ModalShape& shape = body.body->shape();
-    const auto at = static_cast<Eigen::Index>(slot->speed);
-    Part part{"'" + body.name + "'", none, none};
-    part.by_position.block(at, at, shape.modes(), shape.modes()) = shape.stiffness;
-    part.by_speed.block(at, at, shape.modes(), shape.modes()) = shape.damping;
-    take(std::move(part));
-  }
-  const std::span<const double> y(state.y);
-  bool at_frames = false;
-  for (std::size_t l = 0; l < model.loads().size(); ++l) {
-    const LoadNode& node = model.loads()[l];
-    at_frames = at_frames || !node.load->frames().empty();
-    Part part{"load '" + node.name + "'", none, none, true};
-    const auto& differenced = tangents.differenced;
-    const bool by_itself =
-        node.load->add_derivatives(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
-                                   part.by_position, part.by_speed);
-    const bool by_states = add_of_states(node, model, state, part);
-    if (node.load->frames().empty() &&
-        std::find(differenced.begin(), differenced.end(), node.name) != differenced.end()) {
-      part.by_position.setZero();
-      part.by_speed.setZero();
-      add_differences(dynamics, l, state, part);
-    } else if (!by_itself && !by_states) {
-      continue;
-    }
-    // Efforts stand on the other side of the equation.
-    part.by_position = -part.by_position;
-    part.by_speed = -part.by_speed;
-    take(std::move(part));
-  }
-  // Wrenches at frames are not told from what the frames' bodies do.
-  if (at_frames) rest.name += ", and loads at frames", rest.of_load = true;
-  parts.push_back(std::move(rest));
-  return parts;
-}
 
 /// Null vector of Q, to which Q is close, by inverse iteration.
 Eigen::VectorXcd null_vector(const Eigen::MatrixXcd& Q) {
@@ -146,24 +40,80 @@ struct Cause {
   Eigen::Index at = 0;  ///< the free displacement on which it acts most
 };
 
-/// What the greatest part of the motion's forces is.
-Cause cause_of(const std::vector<Part>& parts, const std::vector<Eigen::Index>& free, Complex pole,
-               const Eigen::VectorXcd& left, const Eigen::VectorXcd& right, Complex inertial) {
-  double greatest = 0;
-  Cause cause;
-  const auto weigh = [&](const Eigen::MatrixXd& part, Complex factor, const std::string& name, bool of_load) {
-    const Eigen::VectorXcd works = left.conjugate().cwiseProduct(factor * (part(free, free).cast<Complex>() * right));
-    const double share = (-works.sum() / inertial).real();
-    if (share <= greatest) return;
-    greatest = share;
-    cause.name = name;
-    cause.of_load = of_load;
-    works.cwiseAbs().maxCoeff(&cause.at);
-  };
-  for (const Part& part : parts) {
-    weigh(part.by_position, 1.0, "stiffness of " + part.name, part.of_load);
-    weigh(part.by_speed, pole, "damping of " + part.name, part.of_load);
+/// A pole with its vectors: (M λ + G)(λ − C) δ + K δ = 0.
+struct Motion {
+  Complex pole = 0;
+  Eigen::VectorXcd left, right, rate;  ///< rate = (λ − C) right
+  Complex inertia = 0;                 ///< wᴴ M v
+  Complex slope = 0;                   ///< wᴴ Q′(λ) v, so that forces P change λ by −wᴴ P v / slope
+};
+
+/// Works wᴴ P v of forces K v + D (λ − C) v, one a free displacement.
+Eigen::VectorXcd works_of(const Motion& motion, const std::vector<Eigen::Index>& free, const Eigen::MatrixXd* stiffness,
+                          const Eigen::MatrixXd* damping) {
+  Eigen::VectorXcd forces = Eigen::VectorXcd::Zero(motion.right.size());
+  if (stiffness != nullptr) forces += (*stiffness)(free, free).cast<Complex>() * motion.right;
+  if (damping != nullptr) forces += (*damping)(free, free).cast<Complex>() * motion.rate;
+  return motion.left.conjugate().cwiseProduct(forces);
+}
+
+/// Of the parts weighed the one with the greatest share.
+class Greatest {
+ public:
+  /// \param over what the works are shares of, or change an eigenvalue by
+  explicit Greatest(Complex over) : over_(over) {}
+  void weigh(const Eigen::VectorXcd& works, const std::string& name, bool of_load) {
+    const double share = (-works.sum() / over_).real();
+    if (share <= share_) return;
+    share_ = share;
+    cause_.name = name;
+    cause_.of_load = of_load;
+    works.cwiseAbs().maxCoeff(&cause_.at);
   }
+  [[nodiscard]] const Cause& cause() const { return cause_; }
+  [[nodiscard]] double share() const { return share_; }
+
+ private:
+  Complex over_;
+  double share_ = 0;
+  Cause cause_;
+};
+
+/// What the greatest part of the motion's forces λ² M is.
+Cause cause_of_speed(const std::vector<NamedPart>& parts, const std::vector<Eigen::Index>& free, const Motion& motion) {
+  Greatest greatest(motion.pole * motion.pole * motion.inertia);
+  for (const NamedPart& part : parts) {
+    greatest.weigh(works_of(motion, free, &part.by_position, nullptr), "stiffness of " + part.name, part.of_load);
+    greatest.weigh(works_of(motion, free, nullptr, &part.by_speed), "damping of " + part.name, part.of_load);
+  }
+  return greatest.cause();
+}
+
+/// What the motion grows by: without a hundredth of it Re λ is less by a hundredth of its share, more than without that
+/// of any other. The greatest force, or the one that does the most work, may be none of the reasons: damping in a shaft
+/// that turns above its critical speed takes energy in the axes of the shaft, and without it nothing grows.
+///
+/// Inertia and weight are one part, with M λ². In axes that turn, centrifugal and Coriolis forces and M λ² are terms
+/// of one acceleration, hundreds of times their sum; each by itself would tell of the axes. Shares of all parts then
+/// add up to nothing, and where no other has one, as of a pendulum that stands on its head, it is this one.
+Cause cause_of_growth(const std::vector<NamedPart>& parts, const Eigen::MatrixXd& mass,
+                      const std::vector<Eigen::Index>& free, const Motion& motion) {
+  Greatest greatest(motion.slope);
+  const NamedPart& inertia = parts.back();
+  for (const NamedPart& part : parts) {
+    if (&part == &inertia) continue;
+    greatest.weigh(works_of(motion, free, &part.by_position, nullptr), "stiffness of " + part.name, part.of_load);
+    greatest.weigh(works_of(motion, free, nullptr, &part.by_speed), "damping of " + part.name, part.of_load);
+  }
+  const Eigen::VectorXcd of_mass = motion.left.conjugate().cwiseProduct(
+                             motion.pole * (mass(free, free).cast<Complex>() * motion.rate)),
+                         works = works_of(motion, free, &inertia.by_position, &inertia.by_speed);
+  greatest.weigh(works + of_mass, inertia.name, inertia.of_load);
+  // What is left of terms that cancel is rounding of them.
+  constexpr double rounding = 1e-9;
+  if (greatest.share() > rounding * std::abs(works.cwiseAbs().sum() / motion.slope)) return greatest.cause();
+  Cause cause{inertia.name, inertia.of_load};
+  works.cwiseAbs().maxCoeff(&cause.at);
   return cause;
 }
 
@@ -207,26 +157,56 @@ const std::string& state_of(const Layout& layout, const Eigen::MatrixXd& A, Comp
   return layout.continuous_names[static_cast<std::size_t>(most)];
 }
 
-/// The eigenvalue that is greatest by a measure of it.
-template <class Measure>
-FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const Held& held, Measure&& measure) {
-  // A state of a load is the cause where it adds more than this to what moves without it.
+/// By what a pole is sought.
+enum class Sought { modulus, growth };
+
+double measure(Sought sought, Complex pole) { return sought == Sought::growth ? pole.real() : std::abs(pole); }
+
+/// Whether states of loads add to what moves without them: more than this share of what is sought. A growth is a small
+/// part of most poles, and a state that makes it may leave the modulus as it was.
+bool made_by_states(Sought sought, Complex with, Complex without) {
   constexpr double more = 0.02;
+  if (sought == Sought::growth) return with.real() - without.real() > more * std::abs(with.real());
+  return std::abs(with - without) > more * std::abs(with);
+}
+
+/// Of the matrices of small motions at a pole, which rounding may not make exact.
+Motion motion_at(Complex value, const Tangents& t, const std::vector<Eigen::Index>& free,
+                 const Eigen::VectorXd& scale) {
+  const Complex pole = value * (1 + 1e-10);
+  const auto m = static_cast<Eigen::Index>(free.size());
+  const auto of_free = [&](const Eigen::MatrixXd& x) -> Eigen::MatrixXcd { return x(free, free).cast<Complex>(); };
+  const Eigen::MatrixXcd turn = pole * Eigen::MatrixXcd::Identity(m, m) - of_free(t.drift), mass = of_free(t.mass),
+                         moving = pole * mass + of_free(t.by_speed);
+  const Eigen::MatrixXcd Q = scale.cast<Complex>().asDiagonal() * (moving * turn + of_free(t.by_position)) *
+                             scale.cast<Complex>().asDiagonal() / std::norm(pole);
+  Motion motion;
+  motion.pole = value;
+  motion.left = scale.cast<Complex>().cwiseProduct(null_vector(Q.adjoint()));
+  motion.right = scale.cast<Complex>().cwiseProduct(null_vector(Q));
+  motion.rate = turn * motion.right;
+  motion.inertia = motion.left.dot(mass * motion.right);
+  motion.slope = motion.left.dot(mass * motion.rate + moving * motion.right);
+  return motion;
+}
+
+FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const Held& held, Sought sought) {
   FastestPole result;
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (free.empty()) return result;
+  const auto by = [&](Complex pole) { return measure(sought, pole); };
   const Tangents t = dynamics.tangents(state.time, state.y, accelerations(dynamics, state, held));
   const Eigen::MatrixXd A = first_order_form(t, held).A;
   const auto m = static_cast<Eigen::Index>(free.size());
   const Eigen::VectorXd masses = t.mass.diagonal()(free).cwiseAbs();
   const Eigen::VectorXd units = balancing_units(A, masses);
-  result.value = greatest_eigenvalue(A, units, measure);
+  result.value = greatest_eigenvalue(A, units, by);
   if (t.by_state.cols() > 0) {
     const Eigen::MatrixXd whole = whole_first_order_form(t, held).A;
     Eigen::VectorXd all_units = Eigen::VectorXd::Ones(whole.rows());
     all_units.head(2 * m) = units;
-    const Complex value = greatest_eigenvalue(whole, all_units, measure);
-    const bool of_state = std::abs(value - result.value) > more * std::abs(value);
+    const Complex value = greatest_eigenvalue(whole, all_units, by);
+    const bool of_state = made_by_states(sought, value, result.value);
     result.value = value;
     if (of_state && value != 0.0) {
       result.of_load = true;
@@ -235,36 +215,26 @@ FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const H
     }
   }
   if (result.value == 0.0) return result;
-
-  // (M λ + G)(λ − C) δ + K δ = 0 with a λ that rounding may not make exact.
-  const Complex pole = result.value * (1 + 1e-10);
-  const Eigen::VectorXd scale = units.head(m).cwiseInverse();
-  const auto of_free = [&](const Eigen::MatrixXd& x) -> Eigen::MatrixXcd { return x(free, free).cast<Complex>(); };
-  const Eigen::MatrixXcd turn = pole * Eigen::MatrixXcd::Identity(m, m) - of_free(t.drift);
-  const Eigen::MatrixXcd Q = scale.cast<Complex>().asDiagonal() *
-                             ((pole * of_free(t.mass) + of_free(t.by_speed)) * turn + of_free(t.by_position)) *
-                             scale.cast<Complex>().asDiagonal() / std::norm(pole);
-  const Eigen::VectorXcd right = scale.cast<Complex>().cwiseProduct(null_vector(Q)),
-                         left = scale.cast<Complex>().cwiseProduct(null_vector(Q.adjoint()));
-  const Complex inertia = left.dot(of_free(t.mass) * right);
+  const Motion motion = motion_at(result.value, t, free, units.head(m).cwiseInverse());
+  const std::vector<NamedPart> parts = named_parts(dynamics, state, t);
   const Cause cause =
-      cause_of(parts_of(dynamics, state, t), free, result.value, left, right, result.value * result.value * inertia);
+      sought == Sought::growth ? cause_of_growth(parts, t.mass, free, motion) : cause_of_speed(parts, free, motion);
   result.cause = cause.name;
   result.of_load = cause.of_load;
   result.speed = static_cast<std::size_t>(free[static_cast<std::size_t>(cause.at)]);
   result.alone = masses[cause.at];
-  result.inertia = std::abs(inertia) / (std::abs(left[cause.at]) * std::abs(right[cause.at]));
+  result.inertia = std::abs(motion.inertia) / (std::abs(motion.left[cause.at]) * std::abs(motion.right[cause.at]));
   return result;
 }
 
 }  // namespace
 
 FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, const Held& held) {
-  return pole_by(dynamics, state, held, [](Complex pole) { return std::abs(pole); });
+  return pole_by(dynamics, state, held, Sought::modulus);
 }
 
 FastestPole growing_pole(const TangentDynamics& dynamics, const State& state, const Held& held) {
-  return pole_by(dynamics, state, held, [](Complex pole) { return pole.real(); });
+  return pole_by(dynamics, state, held, Sought::growth);
 }
 
 bool FastestPole::of_load_state() const { return cause.starts_with(state_of_load); }

@@ -32,7 +32,8 @@ Held driven_speeds(const Model& model, const State& state);
 /// \throws std::domain_error where the mass matrix of the free speeds is singular or anything is not finite.
 FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, const Held& held);
 
-/// The same of the one with the greatest real part: what grows fastest; its cause is what pushes it most.
+/// The same of the one with the greatest real part: what grows fastest. Its cause is what the growth is by: without a
+/// little of it Re λ falls most, with λ by first-order perturbation. "inertia and weight" where it is no other's.
 FastestPole growing_pole(const TangentDynamics& dynamics, const State& state, const Held& held);
 
 /// In words: "-26911/s: damping of load 'servo' on shoulder.0, behind which there is little inertia (0.011 of 5.3)".

@@ -216,6 +216,9 @@ Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& stat
   if (free.empty()) return a;
   const Tangents t = dynamics.tangents(state.time, state.y, a);
   const Eigen::MatrixXd M = t.mass(free, free);
+  // No factors of what is not finite say anything of the masses.
+  if (!M.allFinite() || !t.residual.allFinite())
+    throw std::domain_error("the derivatives at this state are not finite");
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
   if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
   a(free) = -lu.solve(t.residual(free));

@@ -15,14 +15,28 @@ std::vector<FrameIndex> frames_of(const Model& model) {
   return frames;
 }
 
-/// Greatest distance of a frame of a body from its root, or of a hinge or closing frame from what it is placed in; 1
-/// where all are at one place.
+/// Length of the longest flexible body, or where that is more the greatest distance from its body's root of a frame
+/// that a hinge or a constraint joins, or of a hinge or closing frame from what it is placed in; 1 where all are at one
+/// place. Frames that nothing joins do not count: they are no part of what moves, and reactions that depend on this
+/// length, as those of redundant loops do, are the same whatever else a scene watches or loads.
 double size_of_largest(const Model& model) {
   double size = 0;
+  const auto reach = [&](int body, int frame) {
+    if (body < 0) return;
+    const Frame& f = model.bodies()[static_cast<std::size_t>(body)].frames[static_cast<std::size_t>(frame)];
+    size = std::max(size, (f.section.X + f.pose.p).norm());
+  };
   for (const BodyNode& body : model.bodies())
-    for (const Frame& f : body.frames) size = std::max(size, (f.section.X + f.pose.p).norm());
-  for (const HingeNode& hinge : model.hinges()) size = std::max(size, hinge.offset.p.norm());
-  for (const LoopClosure* c : loops_of(model)) size = std::max(size, c->offset().p.norm());
+    if (body.body->shape().modes() > 0) size = std::max(size, body.body->shape().length);
+  for (const HingeNode& hinge : model.hinges()) {
+    reach(hinge.parent, hinge.parent_frame);
+    reach(hinge.child, hinge.child_frame);
+    size = std::max(size, hinge.offset.p.norm());
+  }
+  for (const LoopClosure* c : loops_of(model)) {
+    for (const FrameIndex& f : {c->a(), c->b()}) reach(f.body, f.frame);
+    size = std::max(size, c->offset().p.norm());
+  }
   return size > 0 ? size : 1;
 }
 

@@ -21,7 +21,8 @@ class LoopPaths {
   LoopPaths(const Model& model, Terms terms);
   /// Of equations, in all loops.
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// ℓ, the size of the largest body [m].
+  /// ℓ [m]: the length of the longest flexible body, or the greatest distance at which a hinge or a constraint joins a
+  /// body, from its root, where that is more.
   [[nodiscard]] double length() const { return length_; }
   /// Bytes of memory that the functions below share, aligned to 64.
   [[nodiscard]] std::size_t work_size() const { return work_size_; }

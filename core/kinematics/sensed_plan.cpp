@@ -42,6 +42,12 @@ std::vector<PointFields> points_of(const ModalShape& shape, StrainOrder order) {
   return points;
 }
 
+/// Whether a body is the piece of a beam in segments that lies before another on the side of its root.
+bool is_piece_before(const Model& model, std::size_t body, std::size_t other) {
+  const std::optional<Segment>&a = model.bodies()[body].segment, &b = model.bodies()[other].segment;
+  return a && b && a->whole == b->whole && a->index + 1 == b->index;
+}
+
 }  // namespace
 
 Plan::Plan(const Model& m, Terms terms, std::span<const SectionPlace> places)
@@ -76,7 +82,8 @@ void Plan::add_cut(const SectionPlace& place) {
   } else {
     cut.rigid = rigid_inertia(beyond);
   }
-  // What is at the section is beyond it, but for the body's own hinge.
+  // What is at the section is beyond it, but for the piece before it, and at the root for the hinge that holds it
+  // there.
   const double close = 1e-9 * node.body->shape().length;
   const auto x_of = [&](std::size_t frame) { return body.sections[body.frames[frame].section].at.X.x(); };
   for (std::size_t f = 0; f < body.named; ++f) cut.frames.push_back(x_of(f) >= place.x - close ? 1 : 0);
@@ -93,10 +100,14 @@ void Plan::add_cut(const SectionPlace& place) {
   }
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const HingeNode& hinge = model.hinges()[h];
-    if (hinge.parent == place.body && cut.frames[static_cast<std::size_t>(hinge.parent_frame)] > 0)
+    if (hinge.parent == place.body && cut.frames[static_cast<std::size_t>(hinge.parent_frame)] > 0 &&
+        !is_piece_before(model, h, cut.body))
       cut.hinges.push_back(h);
   }
-  cut.inboard = x_of(body.M) > place.x + close;
+  const int parent = model.hinges()[cut.body].parent;
+  const bool first = !node.segment || node.segment->index == 0;
+  const bool behind = first || (parent >= 0 && is_piece_before(model, static_cast<std::size_t>(parent), cut.body));
+  cut.inboard = x_of(body.M) >= place.x - close && !(behind && x_of(body.M) <= close);
   cuts.push_back(std::move(cut));
 }
 

@@ -136,7 +136,8 @@ class Linearization {
   /// Sets the derivatives of ẋ, u̇ and ż (rows) with respect to positions, speeds and continuous states of loads
   /// (columns), Layout::moving() of each, column-major, at (t, y) where ẏ is `y_dot`. Discrete states are constant and
   /// the work is a quadrature, on which nothing depends: they have no rows and no columns. With respect to a quaternion
-  /// they are those along its unit sphere, and zero across it. O(size²) memory, O(size²) to O(size³) time; may
+  /// they are those along its unit sphere, and zero across it, but for its own rate, which is linear in all four of its
+  /// components. O(size²) memory, O(size²) to O(size³) time; may
   /// allocate, as it is asked for once in many steps.
   virtual Evaluation jacobian(double t, std::span<const double> y, std::span<const double> y_dot,
                               std::span<double> jacobian) const = 0;

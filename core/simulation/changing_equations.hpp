@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "withy/core/plugin/forwarding_equations.hpp"
+#include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/rungs.hpp"
 
 namespace withy {
@@ -29,6 +30,8 @@ class ChangingEquations final : public ForwardingEquations, private LinearlyImpl
   [[nodiscard]] std::size_t rung() const { return rung_; }
   /// Made in each rung, those of the run's watches among them.
   [[nodiscard]] const std::vector<std::size_t>& evaluations() const { return evaluations_; }
+  /// Puts down or takes up those counts.
+  void remember(Memory& memory) { memory(evaluations_); }
   /// Times [s] at which the rung changes, increasing.
   [[nodiscard]] std::vector<double> hand_overs() const;
 

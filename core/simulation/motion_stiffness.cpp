@@ -85,7 +85,13 @@ Matrix3 held_rotations(const Model& model, std::size_t hinge) {
   return held;
 }
 
-/// The section at the inboard hinge of a body, where modes turn it and the hinge holds it.
+bool same_root(const std::optional<HeldSection>& a, const std::optional<HeldSection>& b) {
+  if (!a || !b) return !a && !b;
+  return a->held == b->held && same_section(a->at, b->at);
+}
+
+}  // namespace
+
 std::optional<HeldSection> held_root(const Model& model, std::size_t body) {
   const HingeNode& hinge = model.hinges()[body];
   const Frame& frame = model.bodies()[body].frames[static_cast<std::size_t>(hinge.child_frame)];
@@ -93,13 +99,6 @@ std::optional<HeldSection> held_root(const Model& model, std::size_t body) {
   if (root.leaves_all()) return {};
   return root;
 }
-
-bool same_root(const std::optional<HeldSection>& a, const std::optional<HeldSection>& b) {
-  if (!a || !b) return !a && !b;
-  return a->held == b->held && same_section(a->at, b->at);
-}
-
-}  // namespace
 
 std::string motion_term_name(std::size_t term) {
   static constexpr std::array<const char*, motion_terms> names = {"wx wx",

@@ -36,6 +36,9 @@ struct LoadRatio {
   [[nodiscard]] double size() const { return greatest > -least ? greatest : -least; }
 };
 
+/// The section at the inboard hinge of a body, where modes turn it and the hinge holds it.
+std::optional<HeldSection> held_root(const Model& model, std::size_t body);
+
 /// A second-order displacement ½ qᵀΓq does work against the inertia force −m (a − g) of the undeformed body, to which
 /// belongs the stiffness Σ m (a − g)·Γ, with Γ as it is seen from the section at the inboard hinge where modes turn
 /// that and the hinge holds it: the body then turns as a whole, and the forces keep their directions; a body or section

@@ -217,6 +217,7 @@ class Run final : public SteppingObserver {
     loops_.remember(memory);
     motion_gap_.remember(memory);
     if (watch_ != nullptr) watch_->remember(memory);
+    if (options_.changing != nullptr) options_.changing->remember(memory);
     memory(emitted_);
     halves_.remember(memory);
     double spent = summary_.cpu_seconds + thread_cpu_seconds() - cpu_began_;

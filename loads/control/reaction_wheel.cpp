@@ -1,8 +1,9 @@
 /// \file
 /// The drive of a reaction wheel on its axle:
-///   τ_m = max(−τ_max, min(τ_max, c)), taken off over the last hundredth before the speed limit,
-///   T τ̇ = τ_m − τ  (at once where T is zero),
-///   effort = τ − b Ω − τ_c tanh(Ω/Ω_c).
+///   T τ̇ = max(−τ_max, min(τ_max, c)) − τ  (at once where T is zero),
+///   effort = s τ − b Ω − τ_c tanh(Ω/Ω_c),
+/// where s falls from 1 to 0 over the last hundredth before the speed limit for what drives, and is 1 for what brakes.
+/// It acts behind the lag: what the motor cannot give at its speed it does not give because it was asked for before.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -38,7 +39,7 @@ class ReactionWheel final : public ControlBlock {
   }
   void show(double /*t*/, std::span<const double> w, std::span<const double> z,
             std::span<double> values) const noexcept override {
-    values[0] = z.empty() ? motor(w) : z[0];
+    values[0] = motor(w, z);
     values[1] = friction(w[1]);
     std::size_t next = 2;
     if (drive_.inertia > 0) values[next++] = drive_.inertia * w[1];
@@ -46,29 +47,30 @@ class ReactionWheel final : public ControlBlock {
     if (std::isfinite(drive_.speed_limit)) values[next] = drive_.speed_limit - std::abs(w[1]);
   }
   void begin(double /*t*/, std::span<const double> w, std::span<double> z) const noexcept override {
-    if (!z.empty()) z[0] = motor(w);
+    if (!z.empty()) z[0] = limited(w[0]);
   }
   void rates(double /*t*/, std::span<const double> w, std::span<const double> z,
              std::span<double> rates) const noexcept override {
-    if (!z.empty()) rates[0] = (motor(w) - z[0]) / drive_.lag;
+    if (!z.empty()) rates[0] = (limited(w[0]) - z[0]) / drive_.lag;
   }
   void output(double /*t*/, std::span<const double> w, std::span<const double> z,
               std::span<double> v) const noexcept override {
-    v[0] = (z.empty() ? motor(w) : z[0]) - friction(w[1]);
+    v[0] = motor(w, z) - friction(w[1]);
   }
   bool feeds_through(std::size_t input) const override { return input == 1 || !(drive_.lag > 0); }
   bool slopes(double /*t*/, std::span<const double> w, std::span<const double> z, Slopes& s) const override {
-    const double c = std::clamp(w[0], -drive_.torque_limit, drive_.torque_limit);
-    const double share = share_at(c, w[1]), sech = 1 / std::cosh(w[1] / drive_.coulomb_speed);
-    Eigen::RowVector2d motor(std::abs(w[0]) <= drive_.torque_limit ? share : 0, 0);
-    if (share > 0 && share < 1) motor[1] = -c * std::copysign(1 / (soft * drive_.speed_limit), w[1]);
+    const double torque = z.empty() ? limited(w[0]) : z[0];
+    const double share = share_at(torque, w[1]), within = std::abs(w[0]) <= drive_.torque_limit ? 1 : 0,
+                 sech = 1 / std::cosh(w[1] / drive_.coulomb_speed);
     s.output_by_input(0, 1) = -drive_.viscous - drive_.coulomb / drive_.coulomb_speed * sech * sech;
+    if (share > 0 && share < 1)
+      s.output_by_input(0, 1) -= torque * std::copysign(1 / (soft * drive_.speed_limit), w[1]);
     if (z.empty()) {
-      s.output_by_input.row(0) += motor;
+      s.output_by_input(0, 0) = share * within;
       return true;
     }
-    s.output_by_state(0, 0) = 1;
-    s.rate_by_input = motor / drive_.lag;
+    s.output_by_state(0, 0) = share;
+    s.rate_by_input(0, 0) = within / drive_.lag;
     s.rate_by_state(0, 0) = -1 / drive_.lag;
     return true;
   }
@@ -81,9 +83,13 @@ class ReactionWheel final : public ControlBlock {
     if (!std::isfinite(drive_.speed_limit) || torque * rate <= 0) return 1;
     return std::clamp((drive_.speed_limit - std::abs(rate)) / (soft * drive_.speed_limit), 0.0, 1.0);
   }
-  [[nodiscard]] double motor(std::span<const double> w) const noexcept {
-    const double c = std::clamp(w[0], -drive_.torque_limit, drive_.torque_limit);
-    return c * share_at(c, w[1]);
+  [[nodiscard]] double limited(double command) const noexcept {
+    return std::clamp(command, -drive_.torque_limit, drive_.torque_limit);
+  }
+  /// What the motor gives [N m].
+  [[nodiscard]] double motor(std::span<const double> w, std::span<const double> z) const noexcept {
+    const double torque = z.empty() ? limited(w[0]) : z[0];
+    return torque * share_at(torque, w[1]);
   }
   [[nodiscard]] double friction(double rate) const noexcept {
     return drive_.viscous * rate + drive_.coulomb * std::tanh(rate / drive_.coulomb_speed);

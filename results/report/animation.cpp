@@ -135,9 +135,32 @@ Animation::Animation(std::string_view text) try {
     at += bodies_.back().size();
   }
   if (at != size_) throw ResultsError("the report holds other numbers than it says");
+  join_segments(motion.at("parts"));
   radius_ = 0.011 * extent();
 } catch (const Json::exception&) {
   throw ResultsError("the report holds no motion that this program can read");
+}
+
+/// Segments have the name of their beam, each but the first on the one before it; others have names of their own.
+void Animation::join_segments(const Json& parts) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    Body& body = bodies_[b];
+    body.root = b;
+    const auto parent = parts[b].at("parent").get<std::ptrdiff_t>();
+    if (parent < 0 || static_cast<std::size_t>(parent) >= b) continue;
+    const Body& before = bodies_[static_cast<std::size_t>(parent)];
+    if (before.name != body.name) continue;
+    const Json& on = parts[static_cast<std::size_t>(parent)];
+    const auto child = std::find(on.at("children").begin(), on.at("children").end(), Json(b));
+    if (child == on.at("children").end()) continue;
+    const Json& hung = on.at("hung").at(static_cast<std::size_t>(child - on.at("children").begin()));
+    body.root = before.root;
+    body.from_root = before.from_root * pose_from(hung.get<std::vector<double>>(), 0);
+  }
+}
+
+Pose Animation::undeformed(std::size_t body, std::size_t moment) const {
+  return pose(bodies_[body].root, moment) * bodies_[body].from_root;
 }
 
 Pose Animation::pose(std::size_t body, std::size_t moment) const {

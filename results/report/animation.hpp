@@ -29,6 +29,9 @@ class Animation {
   [[nodiscard]] bool flexible(std::size_t body) const { return bodies_[body].flexible; }
   /// Of a body at a moment, in the world.
   [[nodiscard]] Pose pose(std::size_t body, std::size_t moment) const;
+  /// Where it would be at a moment, were all that it is a part of undeformed: of a segment of a beam as far from the
+  /// whole beam's root as at rest; of any other body its pose.
+  [[nodiscard]] Pose undeformed(std::size_t body, std::size_t moment) const;
   /// Its surface at rest: a tube along a beam, the sheet of a plate with its thickness, the outer faces of a mesh,
   /// beads at the points of a body whose faces are not known, the surface that a rigid body is given, or else the box
   /// of its mass and inertia with rods to what hangs on it. Without triangles where there is nothing to draw.
@@ -55,6 +58,8 @@ class Animation {
     bool turns = false;             ///< whether its numbers have the y axes of sections
     std::optional<Surface> given;   ///< that it is drawn with
     std::size_t at = 0;             ///< of its numbers in those of a moment
+    std::size_t root = 0;           ///< itself, or of a segment the first of its beam
+    Pose from_root;                 ///< in the root's frame, where that beam is undeformed
     [[nodiscard]] std::size_t size() const;
     /// Shapes, each of three numbers a point.
     [[nodiscard]] std::size_t weights() const { return points.empty() ? 0 : shapes.size() / (3 * points.size()); }
@@ -63,6 +68,8 @@ class Animation {
   struct Shape {
     std::vector<Vector3> points, y_axes;
   };
+  /// Finds what segments are parts of.
+  void join_segments(const nlohmann::ordered_json& parts);
   static Body body_of(const nlohmann::ordered_json& part, const nlohmann::ordered_json& run);
   [[nodiscard]] Shape shape_at(const Body& body, std::size_t moment) const;
   [[nodiscard]] Surface drawn(const Body& body, const Shape& shape) const;

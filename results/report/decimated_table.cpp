@@ -25,6 +25,18 @@ void DecimatedTable::widen(Range& range, const Range& next) {
 DecimatedTable::DecimatedTable(std::size_t stretches, std::size_t samples, std::size_t numbers)
     : most_stretches_(stretches / 2 * 2), most_samples_(samples), most_numbers_(numbers) {}
 
+DecimatedTable::DecimatedTable(const DecimatedTable& whole, std::size_t columns)
+    : most_stretches_(whole.most_stretches_),
+      most_samples_(whole.most_samples_),
+      most_numbers_(whole.most_numbers_),
+      columns_(whole.columns_.begin(), whole.columns_.begin() + static_cast<std::ptrdiff_t>(columns)),
+      rows_(whole.rows_),
+      stride_(whole.stride_),
+      sample_stride_(whole.sample_stride_),
+      stretches_(whole.stretches_),
+      samples_(whole.samples_),
+      last_(whole.last_) {}
+
 void DecimatedTable::begin(const std::vector<Column>& columns) {
   constexpr std::size_t least = 200;
   columns_ = columns;

@@ -19,6 +19,8 @@ class DecimatedTable final : public Recorder {
   /// \param numbers where given, as many stretches as have so many numbers in all columns together, within 200 and
   ///   `stretches`: a picture of many columns stays small
   DecimatedTable(std::size_t stretches, std::size_t samples, std::size_t numbers = 0);
+  /// What another has kept, of its first columns alone.
+  DecimatedTable(const DecimatedTable& whole, std::size_t columns);
 
   void begin(const std::vector<Column>& columns) override;
   void row(std::span<const double> numbers) override;

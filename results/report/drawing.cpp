@@ -79,7 +79,7 @@ Json box_json(const ModalShape& shape) {
 
 Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, Looks looks,
                  const EquationsOfMotion* equations)
-    : looks_(std::move(looks)), model_(Model::in_kinematics(model, terms)), tips_(tips(*model)) {
+    : looks_(std::move(looks)), model_(Model::in_kinematics(model, terms)) {
   parts_.resize(model_->bodies().size());
   std::unordered_map<const Body*, std::size_t> first;  // equal bodies are one object
   std::vector<BodyNode> framed;
@@ -329,36 +329,6 @@ std::vector<std::vector<Vector3>> Drawing::lines(std::span<const double> y) {
     if (tip >= 0) all.push_back({pose_at(part.frame).p, pose_at(tip).p});
   }
   return all;
-}
-
-std::vector<std::string> Drawing::rates() const {
-  std::vector<std::string> names;
-  for (std::size_t b = 0; b < parts_.size(); ++b)
-    if (parts_[b].flexible) names.push_back(model_->bodies()[b].name);
-  return names;
-}
-
-void Drawing::append_rates(std::vector<double>& numbers) const {
-  for (std::size_t b = 0; b < parts_.size(); ++b) {
-    if (!parts_[b].flexible) continue;
-    const WorldVelocity v = seen_->frame_velocity(static_cast<int>(b), parts_[b].frame);
-    numbers.push_back(Eigen::Map<const Vector3>(v.angular.data()).norm());
-  }
-}
-
-std::vector<std::string> Drawing::deflections() const {
-  std::vector<std::string> names;
-  for (const Tip& tip : tips_)
-    if (tip.flexible && tip.length > 0) names.push_back(tip.body);
-  return names;
-}
-
-void Drawing::append_deflections(std::vector<double>& numbers) const {
-  for (const Tip& tip : tips_) {
-    if (!tip.flexible || !(tip.length > 0)) continue;
-    const auto d = deflection(*seen_, tip);
-    numbers.push_back(Eigen::Map<const Vector3>(d.data()).norm() / tip.length);
-  }
 }
 
 std::pair<Eigen::Index, Eigen::Index> widest_plane(const Vector3& low, const Vector3& high) {

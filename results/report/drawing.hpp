@@ -11,7 +11,6 @@
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
-#include "withy/core/simulation/tips.hpp"
 #include "withy/results/report/bent_body.hpp"
 #include "withy/results/report/looks.hpp"
 #include "withy/results/report/mode_shapes.hpp"
@@ -53,14 +52,6 @@ class Drawing {
   /// How many numbers `append` adds.
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// Names of what is measured against limits of validity, as the certificate has them, and the values at the state
-  /// last appended: of each flexible body its rate [rad/s], to be divided by its fundamental frequency, and of each
-  /// that has a tip its deflection over its length.
-  [[nodiscard]] std::vector<std::string> rates() const;
-  [[nodiscard]] std::vector<std::string> deflections() const;
-  void append_rates(std::vector<double>& numbers) const;
-  void append_deflections(std::vector<double>& numbers) const;
-
  private:
   enum class Kind { box, line, strip, mesh, points };
   struct Part {
@@ -95,7 +86,6 @@ class Drawing {
   Looks looks_;
   std::shared_ptr<const Model> model_;  ///< every body has a frame with the pose of its own
   std::vector<Part> parts_;
-  std::vector<Tip> tips_;
   std::unique_ptr<Observation> seen_;
   std::size_t size_ = 0;
 };

@@ -42,7 +42,14 @@ Json curve_json(const Curve& curve, std::size_t place, const std::vector<std::st
   }
   if (curve.points) j["points"] = true;
   if (curve.ends_early) j["ends_early"] = true;
+  auto gap = curve.behind_gaps.begin();
   for (const std::size_t i : drawn(curve)) {
+    if (gap != curve.behind_gaps.end() && *gap <= i) {
+      j["x"].push_back(curve.x[i]);
+      j["y"].push_back(nullptr);
+      if (i < curve.notes.size()) j["notes"].push_back("");
+      while (gap != curve.behind_gaps.end() && *gap <= i) ++gap;
+    }
     j["x"].push_back(curve.x[i]);
     j["y"].push_back(curve.y[i]);
     if (i < curve.notes.size()) j["notes"].push_back(curve.notes[i]);

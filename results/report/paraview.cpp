@@ -67,12 +67,13 @@ void append(const Vector3& v, std::vector<float>& numbers) {
 std::string moment_text(const Animation& run, const Grid& grid, std::size_t moment) {
   std::vector<float> points, displacements;
   for (std::size_t b = 0; b < run.bodies(); ++b) {
-    const Pose X = run.pose(b, moment);
+    const Pose X = run.pose(b, moment), X_rest = run.undeformed(b, moment);
     const std::vector<Vector3>& rest = grid.surfaces[b].vertices;
     const std::vector<Vector3> now = run.flexible(b) ? run.vertices(b, moment) : rest;
     for (std::size_t v = 0; v < rest.size(); ++v) {
-      append(X.p + X.R * now[v], points);
-      append(X.R * (now[v] - rest[v]), displacements);
+      const Vector3 p = X.p + X.R * now[v];
+      append(p, points);
+      append(p - (X_rest.p + X_rest.R * rest[v]), displacements);
     }
   }
   return fmt::format(

@@ -46,47 +46,58 @@ void write_list(std::size_t count, const Item& item, const TextSink& write) {
   write("]");
 }
 
-/// Where rows are drawn together each column also has its numbers at the moments of the animation: what is computed of
-/// several columns needs numbers of one time.
-void write_table(const DecimatedTable& table, const std::vector<DecimatedTable::Row>& samples, ArrayTexts& data,
+/// Up to two rows a stretch the least and the greatest of each are its rows. Where a stretch has more, each column also
+/// has its numbers at the moments of the animation: what is computed of several columns, or of several runs, needs
+/// numbers of one time.
+constexpr std::size_t whole_stretch = 2;
+
+Json column_json(const DecimatedTable& table, std::size_t c, const std::vector<DecimatedTable::Row>& samples,
+                 ArrayTexts& data) {
+  const Column& column = table.columns()[c];
+  Json j{{"name", column_name(column.name)}, {"unit", column.unit}, {"data", data.add(table.column(c))}};
+  if (table.stride() > whole_stretch) {
+    std::vector<double> own;
+    for (const DecimatedTable::Row& row : samples) own.push_back((*row)[c]);
+    j["samples"] = data.add(own);
+  }
+  return j;
+}
+
+/// What a page can compute of whole rows it is told where it has none.
+void write_table(const ReportTable& table, const std::vector<DecimatedTable::Row>& samples, ArrayTexts& data,
                  const TextSink& write) {
-  write("{\"rows\":" + std::to_string(table.rows()) + ",\"stride\":" + std::to_string(table.stride()) +
-        ",\"columns\":");
+  const DecimatedTable& kept = table.kept();
+  write("{\"rows\":" + std::to_string(kept.rows()) + ",\"stride\":" + std::to_string(kept.stride()) + ",\"columns\":");
   write_list(
-      table.columns().size(),
-      [&](std::size_t c) {
-        const Column& column = table.columns()[c];
-        Json j{{"name", column_name(column.name)}, {"unit", column.unit}, {"data", data.add(table.column(c))}};
-        if (table.stride() > 1) {
-          std::vector<double> own;
-          for (const DecimatedTable::Row& row : samples) own.push_back((*row)[c]);
-          j["samples"] = data.add(own);
-        }
-        return j;
-      },
-      write);
+      table.recorded().size(), [&](std::size_t c) { return column_json(kept, c, samples, data); }, write);
+  write(",\"derived\":");
+  write_list(
+      kept.stride() > whole_stretch ? table.derived().shown() : 0,
+      [&](std::size_t d) { return column_json(kept, table.recorded().size() + d, samples, data); }, write);
   write("}");
 }
 
-/// What was measured of one kind, moment by moment; each series has the limit of the indicator of its name.
-void add_validity(const std::vector<std::string>& bodies, const std::vector<double>& values, const char* before,
-                  const char* after, const study::Certificate& certificate, Json& series, ArrayTexts& data) {
-  std::unordered_map<std::string_view, const study::Indicator*> indicators;
-  for (const study::Indicator& i : certificate.indicators) indicators.try_emplace(i.text, &i);
-  std::unordered_map<std::string_view, double> fundamentals;
+/// What was measured of each row; each series has the limit of the indicator of its name.
+Json validity_json(const ReportTable& table, const study::Certificate& certificate, ArrayTexts& data) {
+  std::unordered_map<std::string_view, double> limits, fundamentals;
+  for (const study::Indicator& i : certificate.indicators) limits.try_emplace(i.text, i.limit);
   for (const BodyValidity& b : certificate.bodies) fundamentals[b.name] = b.fundamental;
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    const std::string name = before + bodies[k] + after;
-    const auto found = indicators.find(name);
-    if (found == indicators.end()) continue;
-    const study::Indicator* indicator = found->second;
-    const auto fundamental = fundamentals.find(bodies[k]);
-    const bool of_rate = indicator->text.starts_with("rate") && fundamental != fundamentals.end();
-    const double scale = of_rate ? 1 / fundamental->second : 1;
-    std::vector<double> own;
-    for (std::size_t i = k; i < values.size(); i += bodies.size()) own.push_back(scale * values[i]);
-    series.push_back({{"name", name}, {"limit", indicator->limit}, {"data", data.add(own)}});
+  Json all = Json::array();
+  const auto add = [&](const DerivedColumns::Measured& measured, const std::string& name, double scale) {
+    const auto limit = limits.find(name);
+    if (limit == limits.end()) return;
+    std::vector<double> numbers = table.kept().column(table.recorded().size() + measured.column);
+    for (double& x : numbers) x *= scale;
+    all.push_back({{"name", name}, {"limit", limit->second}, {"of", "rows"}, {"data", data.add(numbers)}});
+  };
+  const DerivedColumns& derived = table.derived();
+  for (const DerivedColumns::Measured& m : derived.rates()) {
+    const auto fundamental = fundamentals.find(m.body);
+    add(m, derived.columns()[m.column].name + " over its fundamental frequency",
+        fundamental != fundamentals.end() ? 1 / fundamental->second : 1);
   }
+  for (const DerivedColumns::Measured& m : derived.deflections()) add(m, derived.columns()[m.column].name, 1);
+  return all;
 }
 
 /// Places and vectors moment by moment, six numbers each.
@@ -127,11 +138,12 @@ Json part_json(const Drawing& drawing, std::size_t b, ArrayTexts& data) {
 }  // namespace
 
 RunReport::RunReport(const study::Prepared& prepared)
-    : prepared_(prepared), looks_(prepared.scene), table_(most_stretches, most_moments, most_numbers) {}
+    : prepared_(prepared), looks_(prepared.scene), table_(prepared, most_stretches, most_moments, most_numbers) {}
 
 std::string RunReport::picture() const {
   const std::string& formulation = prepared_.scene.formulation_name;
-  return svg_plot(prepared_.title(), {formulation}, table_panels({{formulation, &table_}}, {}));
+  const DecimatedTable recorded(table_.kept(), table_.recorded().size());
+  return svg_plot(prepared_.title(), {formulation}, table_panels({{formulation, &recorded}}, {}));
 }
 
 void RunReport::write(const study::CertifiedRun& ended, std::string_view run, const TextSink& write) const {
@@ -152,7 +164,7 @@ void RunReport::write(const study::CertifiedRun& ended, std::string_view run, co
     waiting.back() += text;
   };
   {
-    const std::vector<DecimatedTable::Row> samples = table_.samples();
+    const std::vector<DecimatedTable::Row> samples = table_.kept().samples();
     later("],\"table\":");
     write_table(table_, samples, data, later);
     write_motion(samples, ended, data, later);
@@ -166,16 +178,14 @@ void RunReport::write(const study::CertifiedRun& ended, std::string_view run, co
 void RunReport::write_motion(const std::vector<DecimatedTable::Row>& samples, const study::CertifiedRun& ended,
                              ArrayTexts& data, const TextSink& write) const {
   Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms(), looks_, prepared_.equations.get());
-  Arrows arrows(prepared_.scene, prepared_.scene.formulation->terms(), table_.columns());
-  std::vector<double> times, rates, deflections;
+  Arrows arrows(prepared_.scene, prepared_.scene.formulation->terms(), table_.recorded());
+  std::vector<double> times;
   std::vector<float> numbers;
   for (const DecimatedTable::Row& row : samples) {
     const State state = state_of_row(prepared_.model().layout(), *row);
     times.push_back(state.time);
     drawing.append(state.y, numbers);
     arrows.append(state.y, *row);
-    drawing.append_rates(rates);
-    drawing.append_deflections(deflections);
   }
   const Vector3& g = prepared_.model().gravity();
   write(",\"animation\":{\"gravity\":" + page_json({g.x(), g.y(), g.z()}) + ",\"parts\":");
@@ -183,11 +193,7 @@ void RunReport::write_motion(const std::vector<DecimatedTable::Row>& samples, co
       drawing.parts(), [&](std::size_t b) { return part_json(drawing, b, data); }, write);
   write(",\"size\":" + std::to_string(drawing.size()) + ",\"times\":" + std::to_string(data.add(times)) +
         ",\"numbers\":" + std::to_string(data.add(numbers)) + ",\"arrows\":" + page_json(arrows_json(arrows, data)));
-  Json validity = Json::array();
-  add_validity(drawing.rates(), rates, "rate of '", "' over its fundamental frequency", ended.certificate, validity,
-               data);
-  add_validity(drawing.deflections(), deflections, "tip deflection of '", "' over its length", ended.certificate,
-               validity, data);
+  Json validity = validity_json(table_, ended.certificate, data);
   write("},\"validity\":");
   write_list(
       validity.size(), [&](std::size_t i) { return std::move(validity[i]); }, write);

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "withy/results/report/decimated_table.hpp"
 #include "withy/results/report/looks.hpp"
 #include "withy/results/report/report_page.hpp"
+#include "withy/results/report/report_table.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy {
@@ -34,7 +34,7 @@ class RunReport {
 
   const study::Prepared& prepared_;
   Looks looks_;  ///< as they are before the run: a mesh that changes while it runs spoils nothing
-  DecimatedTable table_;
+  ReportTable table_;
 };
 
 }  // namespace withy

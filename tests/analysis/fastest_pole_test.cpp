@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <string>
 
 #include "blade.hpp"
 
@@ -137,6 +138,62 @@ TEST(FastestPole, of_a_free_structure_is_its_highest_mode) {
   EXPECT_NEAR(std::abs(pole.value), 61.697, 0.01) << "third bending mode of a cantilever of unit properties";
   EXPECT_EQ(pole.cause, "stiffness of 'blade'");
   EXPECT_EQ(c.layout().speed_names[pole.speed], "blade.bending_z[3]");
+}
+
+/// A disk of J = 2 on a spring of 800 N m/rad whose law pushes by 4 N m s along with the rate: λ = 1 ± i √399. The
+/// spring is the greatest force by far, and the growth is by the damping.
+TEST(GrowingPole, of_a_negative_damper_is_its_damping_and_not_the_stiffness_beside_it) {
+  AnalysedScene c(
+      "format: withy/1\ntime: {end: 1}\n"
+      "bodies: {disk: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}\n"
+      "hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: disk}}\n"
+      "loads: {law: {type: expression, hinge: axle, value: \"-800*axle + 4*axle.rate\"}}\n",
+      "quadratic");
+  const FastestPole pole = growing_pole(*c.dynamics, c.state, Held(1, false));
+  EXPECT_NEAR(pole.value.real(), 1, 1e-6);
+  EXPECT_NEAR(pole.value.imag(), std::sqrt(399), 1e-6);
+  EXPECT_EQ(pole.cause, "damping of load 'law'");
+  EXPECT_TRUE(pole.of_load);
+  EXPECT_EQ(fastest_pole(*c.dynamics, c.state, Held(1, false)).cause, "stiffness of load 'law'")
+      << "what makes it fast is another thing";
+}
+
+/// A shaft that turns at Ω = 10 rad/s, 2.8 times its critical speed, with damping of its own, d = 2 ζ ω. In the axes of
+/// the shaft z = y + i x has z̈ + (d + 2iΩ) ż + (ω² − Ω²) z = 0. Without damping nothing grows; centrifugal and Coriolis
+/// forces are thirty times as large, and the damping takes energy from the motion in these axes.
+TEST(GrowingPole, of_a_shaft_above_its_critical_speed_is_the_damping_in_it) {
+  const auto shaft = [](const std::string& damping) {
+    AnalysedScene c(
+        "format: withy/1\ntime: {end: 1}\ngravity: [0, 0, 0]\nbodies:\n"
+        "  shaft: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 1, modes: 1, family: "
+        "clamped-free},\n"
+        "    bending_z: {stiffness: 1, modes: 1, family: clamped-free}, damping_ratio: " +
+            damping + "}\nhinges:\n  axle: {type: revolute, axis: [1, 0, 0], parent: world, child: shaft}\n",
+        "quadratic");
+    c.spin("axle", 10);
+    return c;
+  };
+  AnalysedScene damped = shaft("0.02");
+  const FastestPole pole = growing_pole(*damped.dynamics, damped.state, hold(damped, {"axle"}));
+  // −d/2 − iΩ + √((d/2 + iΩ)² − ω² + Ω²) with ω = 1.8751040687².
+  EXPECT_NEAR(pole.value.real(), 0.1293976, 1e-5);
+  EXPECT_NEAR(pole.value.imag(), 6.479019, 1e-4);
+  EXPECT_EQ(pole.cause, "damping of 'shaft'");
+  AnalysedScene free = shaft("0");
+  EXPECT_LT(growing_pole(*free.dynamics, free.state, hold(free, {"axle"})).value.real(), 1e-6);
+}
+
+/// A kilogram at the end of a rod of a metre that stands on its hinge: √(g/l), and no force is to blame but its weight.
+TEST(GrowingPole, of_a_pendulum_that_stands_on_its_head_is_weight) {
+  AnalysedScene c(
+      "format: withy/1\ntime: {end: 1}\ngravity: [-9.81, 0, 0]\n"
+      "bodies: {bob: {type: rigid, mass: 1, center_of_mass: [1, 0, 0]}}\n"
+      "hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}}\n",
+      "quadratic");
+  const FastestPole pole = growing_pole(*c.dynamics, c.state, Held(1, false));
+  EXPECT_NEAR(pole.value.real(), std::sqrt(9.81), 1e-6);
+  EXPECT_EQ(pole.cause, "inertia and weight");
+  EXPECT_EQ(c.layout().speed_names[pole.speed], "pivot.0");
 }
 
 }  // namespace

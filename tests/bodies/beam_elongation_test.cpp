@@ -32,6 +32,13 @@ std::unique_ptr<Body> elastic_beam(std::vector<Value::Member> strains) {
   return make_plugin<Body>(registry, "beam", std::move(strains));
 }
 
+/// The beam with the Γ and Θ of a strain kinematics.
+std::shared_ptr<const Body> expanded(const Body& body, const std::string& kinematics) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  return body.expanded(*make_plugin<StrainKinematics>(registry, kinematics));
+}
+
 /// Angular frequencies, rising.
 Eigen::VectorXd frequencies(const Body& body) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(body.shape().stiffness, modal_mass(body));
@@ -113,11 +120,28 @@ TEST(BeamElongation, shear_adds_to_the_static_deflection) {
 /// (J. A. Haringx, Philips Res. Rep. 3, 1948): what Γ's product of rotation and shear is for.
 TEST(BeamElongation, column_with_shear_buckles_as_haringx_says) {
   const double EI = 200, kGA = 900;
-  const auto body = elastic_beam({{"bending_y", along(EI, 8)}, {"shear_y", along(kGA, 8)}});
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(-body->station(std::string("tip"))->gamma[0],
-                                                                        body->shape().stiffness);
-  const double P = 1 / eigen.eigenvalues().maxCoeff();
-  EXPECT_NEAR(P * (1 + P / kGA) / (pi * pi * EI / (4 * L * L)), 1, 1e-6);
+  const std::shared_ptr<const Body> complete = elastic_beam({{"bending_y", along(EI, 8)}, {"shear_y", along(kGA, 8)}});
+  for (const auto& body : {complete, expanded(*complete, "foreshortening")}) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(-body->station(std::string("tip"))->gamma[0],
+                                                                          body->shape().stiffness);
+    const double P = 1 / eigen.eigenvalues().maxCoeff();
+    EXPECT_NEAR(P * (1 + P / kGA) / (pi * pi * EI / (4 * L * L)), 1, 1e-6);
+  }
+}
+
+/// Nothing twists in a plane: what bends, shears and stretches there has the complete second order.
+TEST(BeamElongation, foreshortening_is_the_complete_second_order_in_a_plane) {
+  for (const std::string across : {"y", "z"}) {
+    const auto body = elastic_beam(
+        {{"bending_" + across, along(200, 3)}, {"shear_" + across, along(900, 3)}, {"extension", along(5e4, 2)}});
+    const PointExpansion own = *body->station(0.7 * L), anew = *expanded(*body, "foreshortening")->station(0.7 * L);
+    // Bending and extension make a coupling across that is no shortening.
+    EXPECT_GT(own.gamma[across == "y" ? 1 : 2].norm(), 0.01 * own.gamma[0].norm());
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_LT((own.gamma[c] - anew.gamma[c]).norm(), 1e-13 * own.gamma[0].norm()) << across << c;
+      EXPECT_LT((own.theta[c] - anew.theta[c]).norm(), 1e-13) << across << c;
+    }
+  }
 }
 
 /// Γ and Θ against r′ = R (e_x + γ), R′ = R κ̂ integrated by small steps at ε q: what is left is of the third order, so

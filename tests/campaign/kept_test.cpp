@@ -8,6 +8,7 @@
 
 #include "withy/campaign/case_lanes.hpp"
 #include "withy/campaign/case_text.hpp"
+#include "withy/campaign/sweep_page.hpp"
 #include "withy/tests/campaign/store_fixture.hpp"
 
 namespace withy::campaign {
@@ -51,6 +52,102 @@ loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 30}}
   }
   EXPECT_THROW(planned("peak: [seen.rate.max]"), SceneError);
   EXPECT_THROW(planned("final: [seen.rate.most]"), SceneError);
+}
+
+/// Of a hinge's rate that no output of the scene has: ẋ = −0.3 ω sin ωt over 3 s.
+TEST(Sweeps, KeepWhatRatesOfHingesHaveBeenOverARun) {
+  const PlanFolder folder;
+  folder.write("block.yaml", R"(format: withy/1
+time: {end: 3, output: 3}
+integrator: {name: dopri5, rtol: 1e-9, atol: 1e-11}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+initial: {hinges: {slide: {position: [0.3]}}}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 30}}
+)");
+  const auto planned = [&](const std::string& keep) {
+    folder.write("rate.yaml",
+                 "format: withy-sweep/1\nscene: block.yaml\nvary: {loads.spring.stiffness: {grid: [18, 50]}}\n"
+                 "keep: {" +
+                     keep + "}\n");
+    return read_plan((folder / "rate.yaml").string(), plugins());
+  };
+  const Plan plan = planned("final: [slide.rate.max, slide.rate.rms, slide.rate.integral]");
+  EXPECT_THAT(kept_columns(plan), testing::ElementsAre("final.slide.rate.max[m/s]", "final.slide.rate.rms[m/s]",
+                                                       testing::StartsWith("final.slide.rate.integral[m")));
+  const Cases cases(plan);
+  for (const std::uint64_t i : {0U, 1U}) {
+    const CaseResult result = run_case(plan, cases, i, plugins(), {});
+    ASSERT_TRUE(result.completed()) << result.message;
+    const double w = i == 0 ? 3 : 5;
+    EXPECT_NEAR(result.numbers[0], 0.3 * w, 1e-8);
+    EXPECT_NEAR(result.numbers[1], 0.3 * w * std::sqrt(0.5 - std::sin(6 * w) / (12 * w)), 1e-7);
+    EXPECT_NEAR(result.numbers[2], 0.3 * (std::cos(3 * w) - 1), 1e-7) << "the way";
+  }
+  EXPECT_THROW(planned("peak: [slide.rate.max]"), SceneError);
+  EXPECT_THROW(planned("final: [slyde.rate.max]"), SceneError);
+}
+
+/// x = 0.1 + 0.3 t + t²/2m at 2 s: the root of x − 1 is no number where the block is heavy, and everything else of that
+/// case is kept.
+TEST(Sweeps, LeaveACellEmptyWhereAResultOfACompletedRunIsNotFinite) {
+  const PlanFolder folder;
+  folder.write("block.yaml", R"(format: withy/1
+time: {end: 2, output: 0.5}
+integrator: {name: dopri5, rtol: 1e-9, atol: 1e-11}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs:
+  seen: {type: hinge, hinge: slide}
+  root: {type: expression, value: sqrt(seen.position - 1), unit: m}
+initial: {hinges: {slide: {position: [0.1], rate: [0.3]}}}
+loads: {push: {type: hinge-effort, hinge: slide, law: constant, value: 1}}
+)");
+  const auto planned = [&](const std::string& design) {
+    folder.write("root.yaml", "format: withy-sweep/1\nscene: block.yaml\nvary: {bodies.block.mass: {grid: [2, 20]}}\n" +
+                                  design + "keep: {final: [root, slide]}\n");
+    return read_plan((folder / "root.yaml").string(), plugins());
+  };
+  const Plan plan = planned("");
+  EXPECT_TRUE(run(folder, plan, "root", {1, 1, 1, {}}).whole());
+  EXPECT_EQ(collect(folder / "root").failed, 0U);
+  std::istringstream table(table_of(folder, "root"));
+  std::string line;
+  std::getline(table, line);
+  std::getline(table, line);
+  ASSERT_THAT(line, testing::StartsWith("0,completed,2,"));
+  EXPECT_NEAR(std::stod(line.substr(14)), std::sqrt(0.7), 1e-8);
+  std::getline(table, line);
+  ASSERT_THAT(line, testing::StartsWith("1,completed,20,,"));
+  EXPECT_NEAR(std::stod(line.substr(16)), 0.8, 1e-8);
+  const auto alone = case_json(plan, run_case(plan, Cases(plan), 1, plugins(), {}));
+  EXPECT_EQ(alone.at("status"), "completed");
+  EXPECT_TRUE(alone.at("results").at("final.root[m]").is_null());
+  // What differs from nothing known has no row.
+  const Plan alone_each = planned("design: one-at-a-time\n");
+  run(folder, alone_each, "each", {1, 1, 1, {}});
+  EXPECT_TRUE(collect(folder / "each").indices);
+  const std::string indices = folder.read("each/indices.csv");
+  EXPECT_THAT(indices, HasSubstr("final.root[m],bodies.block.mass,2,"));
+  EXPECT_THAT(indices, testing::Not(HasSubstr("final.root[m],bodies.block.mass,20,")));
+  EXPECT_THAT(indices, HasSubstr("final.slide[m],bodies.block.mass,20,"));
+}
+
+/// 31 points of the grid and two results: 62 histories.
+TEST(Sweeps, SayHowManyOfTheirHistoriesThePictureAndThePageHave) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(R"(vary:
+  bodies.rod.mass: {grid: {from: 1, to: 2, count: 31}}
+  initial.hinges.pivot.rate.0: {uniform: {from: 0, to: 1}}
+cases: 2
+keep: {history: {of: [pivot, pivot.rate], every: 0.25}}
+)");
+  EXPECT_TRUE(run(folder, plan, "many", {1, 1, 1, {}}).whole());
+  const Collected collected = collect(folder / "many");
+  EXPECT_THAT(folder.read("many/histories.svg"), HasSubstr(": the first 12 of 62, histories.csv has all<"));
+  const auto page = sweep_page(folder / "many", collected);
+  EXPECT_EQ(page.at("histories").size(), 60U);
+  EXPECT_EQ(page.at("histories_in_all"), 62);
 }
 
 /// A name that stands for many columns, as that of a body for its modes, stands for those of the plan's scene in every

@@ -88,6 +88,32 @@ TEST(Plans, RefuseWhatTheirDesignCannotBe) {
                 HasSubstr("need 2 rows of 2 correlations"));
 }
 
+/// As the scene reads them: 2000 g are 2 kg in tables, too. Names stay names, and what is no mass is the scene's to
+/// refuse.
+TEST(Plans, HaveTheLevelsOfGridsAndListsInSiUnits) {
+  const PlanFolder folder;
+  folder.write("list.csv", "rate\n0.5\n30 deg/s\n1 rpm\n");
+  const Plan plan = folder.plan(R"(vary:
+  bodies.rod.mass: {grid: ["2000 g", 2.5, "3 kg"]}
+  initial.hinges.pivot.rate.0: {list: list.csv}
+  name: {grid: ["2 kg", other]}
+  gravity: {grid: [[0, "-9810 mm/s^2", 0]]}
+derived: {bodies.rod.center_of_mass.1: "-0.25 * bodies.rod.mass"}
+)");
+  EXPECT_THAT(plan.axes[0].levels.numbers, ElementsAre(2, 2.5, 3));
+  ASSERT_EQ(plan.axes[1].levels.numbers.size(), 3U);
+  EXPECT_NEAR(plan.axes[1].levels.numbers[1], 0.523598775598299, 1e-15);
+  EXPECT_NEAR(plan.axes[1].levels.numbers[2], 0.104719755119660, 1e-15);
+  ASSERT_EQ(plan.axes[2].levels.size(), 2U);
+  EXPECT_EQ(plan.axes[2].levels.at(0).text(), "2 kg");
+  EXPECT_EQ(plan.axes[3].levels.at(0).kind(), Value::Kind::list);
+  // A row of another unit in a list, of which the first is tried.
+  folder.write("mixed.csv", "mass\n1500 g\n5 s\n");
+  const Plan mixed = folder.plan("vary: {bodies.rod.mass: {list: mixed.csv}}\n");
+  EXPECT_EQ(mixed.axes[0].levels.at(0).number(), 1.5);
+  EXPECT_EQ(mixed.axes[0].levels.at(1).text(), "5 s");
+}
+
 TEST(Plans, KeepColumnsOfHingesVectorsAndSingleResults) {
   const PlanFolder folder;
   const Plan plan = folder.plan(

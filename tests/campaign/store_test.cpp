@@ -1,7 +1,7 @@
 // Stores: what is damaged is made again and nothing else, and nothing of another plan is mixed in.
 #include "withy/campaign/store.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <array>
@@ -32,6 +32,26 @@ TEST(Sweeps, RepeatWhatIsDamagedAndNothingElse) {
   EXPECT_EQ(repeated.ran, 2U);
   EXPECT_GT(repeated.lost, 0U);
   EXPECT_EQ(table_of(folder, "store"), table);
+}
+
+/// Of 2 points with 7 draws each, shard 2 of 9 has case 1 of the first point alone, and case 10, the fourth of the
+/// other: one case tells the values of the grid.
+TEST(Sweeps, TablesOfAPartHaveTheValuesOfTheGrids) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(R"(vary:
+  bodies.rod.mass: {grid: [1, "2000 g"]}
+  initial.hinges.pivot.rate.0: {uniform: {from: 0, to: 1}}
+cases: 7
+keep: {final: [pivot], history: {of: [pivot], every: 0.5}}
+)");
+  EXPECT_EQ(run(folder, plan, "part", {1, 2, 9, {}}).ran, 2U);
+  collect(folder / "part");
+  const std::string statistics = folder.read("part/statistics.csv"), histories = folder.read("part/histories.csv");
+  EXPECT_THAT(statistics, testing::HasSubstr("\n0,1,,final.pivot[rad],1,"));
+  EXPECT_THAT(statistics, testing::HasSubstr("\n1,2,,final.pivot[rad],1,"));
+  EXPECT_THAT(histories, testing::HasSubstr("\n0,1,,pivot[rad],0,1,"));
+  EXPECT_THAT(histories, testing::HasSubstr("\n1,2,,pivot[rad],0.5,1,"));
+  EXPECT_THAT(folder.read("part/table.csv"), testing::HasSubstr("\n10,completed,2,"));
 }
 
 /// Tables and pages print it to be typed.

@@ -128,6 +128,28 @@ TEST(Compare, LegendOfThePictureSaysHowFarOffEachTipWas) {
   EXPECT_NE(svg.find(">quadratic<"), std::string::npos) << "the reference is off by nothing";
 }
 
+/// Trees are seen at the first output in the second half: of 0, 1.1, 2.2 and 3 s that at 2.2 s, and of 5 to 8 s that at
+/// 7 s, whose middle is 6.5 s.
+TEST(Compare, ThePictureSaysAtWhichTimeItsTreesAreSeen) {
+  const Folder folder;
+  folder.write("block.yaml", R"(format: withy/1
+time: {end: 3, output: 1.1}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+initial: {hinges: {slide: {rate: [0.3]}}}
+)");
+  const auto picture = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"compare", "block.yaml", "--formulations", "linear,quadratic"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished f = withy(folder, arguments);
+    EXPECT_EQ(f.status, 0) << f.err;
+    return folder.read(more.back() + "/compare.svg");
+  };
+  EXPECT_THAT(picture({"--out", "early"}), HasSubstr(" [m], at 2.2 s or where the run stopped"));
+  EXPECT_THAT(picture({"--set", "initial.time=5", "--set", "time.end=8", "--set", "time.output=1", "--out", "late"}),
+              HasSubstr(" [m], at 7 s or where the run stopped"));
+}
+
 TEST(Compare, KeepsResultsAndAWellFormedPicture) {
   const Folder folder;
   const Finished f =

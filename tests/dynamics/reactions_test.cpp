@@ -138,9 +138,10 @@ TEST_P(Reactions, the_section_at_a_beams_root_carries_what_its_hinge_carries) {
   EXPECT_GT(compared, 15);
 }
 
-/// Held at its root or at its tip, spinning or not: N = ∫ ρ ω² x, M = ½ ρ g (L − x)² + P (L − x).
+/// Held at its root or at its tip, spinning or not: N = ∫ ρ ω² x, M = ½ ρ g (L − x)² + P (L − x). At the end that is
+/// held the section at the tip carries all, as that at the root does: the hinge is beyond it.
 TEST(Sections, of_a_stiff_beam_carry_its_weight_its_load_and_its_spin) {
-  constexpr double x = 0.7, L = 2, rho = 1.5, g = 9.81, P = 4, w = 3;
+  constexpr double L = 2, rho = 1.5, g = 9.81, P = 4, w = 3;
   for (const bool at_tip : {false, true}) {
     const std::string end = at_tip ? "root" : "tip";
     Case c(
@@ -150,17 +151,45 @@ TEST(Sections, of_a_stiff_beam_carry_its_weight_its_load_and_its_spin) {
             ", law: constant, value: [0, 0, -4]}}\n",
         "quadratic");
     c.state.y[1] = w;
-    const std::vector<SectionPlace> places = {{0, x}};
+    const std::vector<SectionPlace> places = {{0, 0.7}, {0, at_tip ? L : 0}};
     const auto sensed = c.equations->make_sensed_state(places);
     ASSERT_TRUE(sensed->observe(c.state));
-    const Wrench in = sensed->section(0).inner;
-    // The part beyond x, or where the tip is held the part before it, which is free.
-    const double free = at_tip ? x : L - x, sense = at_tip ? -1 : 1;
-    const double pull = 0.5 * rho * w * w * (L * L - (L - free) * (L - free));
-    EXPECT_NEAR(in.force.x(), -pull, 1e-10);
-    EXPECT_NEAR(in.force.z(), sense * (rho * g * free + P), 1e-10);
-    EXPECT_NEAR(in.moment.y(), -(0.5 * rho * g * free * free + P * free), 1e-10);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Wrench in = sensed->section(i).inner;
+      // The part beyond x, or where the tip is held the part before it, which is free.
+      const double free = at_tip ? places[i].x : L - places[i].x, sense = at_tip ? -1 : 1;
+      const double pull = 0.5 * rho * w * w * (L * L - (L - free) * (L - free));
+      EXPECT_NEAR(in.force.x(), -pull, 1e-10);
+      EXPECT_NEAR(in.force.z(), sense * (rho * g * free + P), 1e-10);
+      EXPECT_NEAR(in.moment.y(), -(0.5 * rho * g * free * free + P * free), 1e-10);
+    }
   }
+}
+
+/// The piece before a section between two is not beyond it, the hinge at the tip is: what is inside does not jump where
+/// nothing hangs, and at the tip it is what the beam exerts on its hinge.
+TEST(Sections, of_a_beam_in_segments_that_is_held_at_its_tip_carry_what_is_before_them) {
+  Case c(
+      "format: withy/1\ntime: {end: 1}\ngravity: [0, -9.81, 0]\nbodies: {boom: {type: beam, length: 2, "
+      "mass_per_length: 1.5, segments: 2, bending_y: {stiffness: 40, modes: 2, family: orthogonal-polynomials}}}\n"
+      "hinges: {wall: {type: weld, parent: world, child: boom.tip}}\nloads: {push: {type: force, frame: boom.root, "
+      "law: "
+      "constant, value: [0, -4, 0]}}\n",
+      "quadratic");
+  const std::vector<int> pieces = c.scene.model->segments("boom");
+  ASSERT_EQ(pieces.size(), 2u);
+  const std::vector<SectionPlace> places = {{pieces[0], 1 - 1e-7}, {pieces[0], 1}, {pieces[1], 0}, {pieces[1], 1}};
+  const auto sensed = c.equations->make_sensed_state(places);
+  ASSERT_TRUE(sensed->observe(c.state));
+  const Wrench before = sensed->section(0).inner;
+  EXPECT_GT(before.force.norm(), 1);
+  for (const std::size_t between : {1u, 2u}) {
+    EXPECT_LT((sensed->section(between).inner.force - before.force).norm(), 1e-5) << between;
+    EXPECT_LT((sensed->section(between).inner.moment - before.moment).norm(), 1e-5) << between;
+  }
+  const Wrench tip = sensed->section(3).inner, hinge = sensed->reaction(pieces[1]);
+  EXPECT_LT((tip.force + hinge.force).norm(), 1e-9 * hinge.force.norm());
+  EXPECT_LT((tip.moment + hinge.moment).norm(), 1e-9 * hinge.force.norm());
 }
 
 /// Strains at fibres are those of the stiffness' own moment there: E times them is m c/I.

@@ -1,6 +1,8 @@
 // Published frequencies of a blade and a tower.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "withy/core/model/model.hpp"
@@ -9,6 +11,8 @@
 
 namespace withy::exchange {
 namespace {
+
+using testing::Contains, testing::ElementsAre, testing::HasSubstr, testing::StartsWith;
 
 double frequency_of(const nlohmann::json& modes, std::size_t mode) {
   return modes.at("points").at(0).at("modes").at(mode).at("hertz").get<double>();
@@ -48,6 +52,70 @@ TEST(ElastoDyn, ABladeIsKnownByThreeFunctionsEachWay) {
     EXPECT_NEAR(one.first, other.first, 5e-4 * other.first);
     EXPECT_NEAR(one.second, other.second, 5e-4 * other.second);
   }
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// Of the blade clamped at its root, carrying nothing, the modes have what the file says of them, and those above the
+/// ratio of the last in their direction: the first three are flapwise, edgewise and flapwise, the fourth is edgewise.
+TEST(ElastoDyn, EachModeHasTheDampingThatTheFileGivesIt) {
+  const std::string file = text_of_file(model_file("blade.dat")), line = "   0.477465   ";
+  const Scratch blade("blade.dat", replaced(replaced(file, line + "BldFlDmp(2)", "3.0 BldFlDmp(2)"),
+                                            line + "BldEdDmp(1)", "2.0 BldEdDmp(1)"));
+  const ImportedScene scene = imported({blade.file(), {}, false, 61.5, 0});
+  const auto modes = nlohmann::json::parse(host::Scene::parse(plugins(), scene.text).modes());
+  const std::array<double, 4> ratios = {0.00477465, 0.02, 0.03, 0.02};
+  for (std::size_t k = 0; k < ratios.size(); ++k)
+    EXPECT_NEAR(modes.at("points").at(0).at("modes").at(k).at("damping_ratio").get<double>(), ratios[k], 1e-9) << k;
+  EXPECT_THAT(scene.remarks, Contains(HasSubstr("1 (flapwise, 0.00477465), 2 (edgewise, 0.02), 3 (flapwise, 0.03)")));
+  // One ratio for all needs no more than itself.
+  const ImportedScene even = imported({model_file("blade.dat"), {}, false, 61.5, 0});
+  EXPECT_THAT(even.text, HasSubstr("    damping_ratio: 0.00477465\n    bending_y"));
+}
+
+/// Directions of equal stiffness have pairs of modes of one frequency, which do not mix.
+TEST(ElastoDyn, ATowerHasDampingOfItsOwnInEachDirection) {
+  const std::string file = text_of_file(model_file("tower.dat"));
+  const Scratch tower("tower.dat", replaced(file, "1   TwrSSDmp(1)", "4   TwrSSDmp(1)"));
+  // Weight bends the tower further, and the ratios are those without.
+  const std::string text = replaced(imported({tower.file(), {}, false, 87.6, 0}).text, "-9.80665", "0");
+  const auto modes = nlohmann::json::parse(host::Scene::parse(plugins(), text).modes());
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < 2; ++k)
+    ratios.push_back(modes.at("points").at(0).at("modes").at(k).at("damping_ratio").get<double>());
+  EXPECT_NEAR(std::min(ratios[0], ratios[1]), 0.01, 1e-9);
+  EXPECT_NEAR(std::max(ratios[0], ratios[1]), 0.04, 1e-9);
+}
+
+/// Columns that FAST 7 gave to ADAMS, and where air acts; one that is zero all along leaves nothing out.
+TEST(ElastoDyn, ColumnsThatNoBeamHasAreListed) {
+  const std::string file = R"(------- FAST 7 -------
+--------- FAST INDIVIDUAL BLADE FILE ---------
+Blade of 3 rows
+---------------------- BLADE PARAMETERS --------
+   3   NBlInpSt    - stations
+   False   CalcBMode   - flag
+   1.0   BldFlDmp(1) - %
+   1.0   BldFlDmp(2) - %
+   1.0   BldEdDmp(1) - %
+   7.5   Sweep - an angle that no beam has
+---------------------- DISTRIBUTED BLADE PROPERTIES ----
+BlFract AeroCent StrcTwst BMassDen FlpStff EdgStff GJStff EAStff Alpha FlpcgOf
+(-) (-) (deg) (kg/m) (Nm^2) (Nm^2) (Nm^2) (N) (-) (m)
+0.0 0.25 0 100 1e8 2e8 1e7 1e9 0 0.0
+0.5 0.25 0 80 8e7 1e8 1e7 1e9 0 0.1
+1.0 0.25 0 50 1e7 2e7 1e7 1e9 0 0.0
+)";
+  const Scratch blade("fast7.dat", file);
+  const ImportedScene scene = imported({blade.file(), {}, false, 30, 0});
+  EXPECT_THAT(scene.remarks, ElementsAre(HasSubstr("mode shapes"), StartsWith("Sweep = 7.5 on line 10 is left out"),
+                                         StartsWith("Column AeroCent of the table is left out"),
+                                         StartsWith("Columns GJStff, EAStff, FlpcgOf of the table are left out")));
+  for (const std::string& remark : scene.remarks) EXPECT_THAT(scene.text, HasSubstr("# " + remark)) << "in the scene";
 }
 
 }  // namespace

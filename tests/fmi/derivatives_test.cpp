@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <random>
 
@@ -29,6 +31,20 @@ std::vector<double> by_differences(Instance3& i, const std::vector<std::uint32_t
   const Eigen::VectorXd found = central_difference(at, 2e-3);
   at(0);
   return {found.begin(), found.end()};
+}
+
+/// The FMU of a scene in text. \param name of its file
+const Unpacked& fmu_of_text(const std::string& name, const std::string& text) {
+  const std::filesystem::path file = scratch() / (name + ".yaml");
+  std::ofstream(file) << text;
+  return exported(file.string(), 3);
+}
+
+double slope_by(Instance3& i, std::uint32_t unknown, std::uint32_t known) {
+  const double along = 1;
+  double got = 0;
+  EXPECT_EQ(i.fmi.GetDirectionalDerivative(i.c, &unknown, 1, &known, 1, &along, 1, &got, 1), fmi3OK) << i.heard.last;
+  return got;
 }
 
 }  // namespace
@@ -86,6 +102,79 @@ TEST(Derivatives, DirectionalOnesAreThoseOfDifferencesAndAdjointOnesTheirTranspo
     }
     EXPECT_NEAR(left, right, 1e-7 * scale);
   }
+}
+
+/// The rate of a filter of the cube of an acceleration u/m is 3 u² du, not the secant of a step as long as the input.
+TEST(Derivatives, ByAnInputThatALawMeasuresInAnotherWayThanInProportionAreThoseAtItsValue) {
+  const Unpacked& fmu = fmu_of_text("cube", R"(format: withy/1
+bodies: {bar: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {s: {type: prismatic, axis: [1, 0, 0], parent: world, child: bar}}
+outputs: {imu: {type: accelerometer, of: bar}}
+loads:
+  u: {type: input, hinge: s}
+  cube: {type: expression, to: nothing, value: imu.x^3}
+  lag: {type: transfer-function, of: cube, hinge: s, numerator: [0.1], denominator: [1, 1]}
+)");
+  Instance3 i(fmu, false);
+  i.initialize();
+  ASSERT_EQ(i.fmi.EnterContinuousTimeMode(i.c), fmi3OK);
+  const std::uint32_t u = fmu.reference("u");
+  for (const double value : {0.2, -1.5}) {
+    ASSERT_EQ(i.set(u, value), fmi3OK) << i.heard.last;
+    EXPECT_NEAR(i.get(fmu.reference("der(lag.x0)")), std::pow(value, 3), 1e-12);
+    EXPECT_NEAR(slope_by(i, fmu.reference("der(lag.x0)"), u), 3 * value * value, 1e-10);
+    // What is affine has no error but rounding.
+    EXPECT_NEAR(slope_by(i, fmu.reference("der(s.rate)"), u), 1, 1e-14);
+  }
+}
+
+/// A force of 10 N along a body of 1 kg, from t = 1 s on, turns with it: across, the acceleration is 10 times the
+/// angle.
+TEST(Derivatives, AtAJumpThatHasNotBeenDealtWithAreThoseBeforeIt) {
+  const Unpacked& fmu = fmu_of_text("follower", R"(format: withy/1
+bodies: {m: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {p: {type: planar, parent: world, child: m}}
+loads: {f: {type: force, frame: m, following: true, law: steps, table: [[0, 0, 0, 0], [1, 10, 0, 0]]}}
+)");
+  Instance3 i(fmu, false);
+  i.initialize();
+  ASSERT_EQ(i.fmi.EnterContinuousTimeMode(i.c), fmi3OK);
+  ASSERT_EQ(i.fmi.SetTime(i.c, 1), fmi3OK);
+  const std::uint32_t across = fmu.reference("der(p.rate.2)"), angle = fmu.reference("p.0");
+  EXPECT_EQ(i.get(fmu.reference("der(p.rate.1)")), 0);
+  EXPECT_EQ(slope_by(i, across, angle), 0);
+  ASSERT_EQ(i.fmi.EnterEventMode(i.c), fmi3OK);
+  fmi3Boolean again = false, over = false, nominals = false, values = false, timed = false;
+  fmi3Float64 next = 0;
+  ASSERT_EQ(i.fmi.UpdateDiscreteStates(i.c, &again, &over, &nominals, &values, &timed, &next), fmi3OK);
+  ASSERT_EQ(i.fmi.EnterContinuousTimeMode(i.c), fmi3OK);
+  EXPECT_NEAR(i.get(fmu.reference("der(p.rate.1)")), 10, 1e-12);
+  EXPECT_NEAR(slope_by(i, across, angle), 10, 1e-12);
+}
+
+/// A bar of 1 + 0.3² kg m² about its hinge, of a spring of 3 N m/rad.
+TEST(Outputs, ThatAreNotFiniteAreDiscardedByThemselves) {
+  const Unpacked& fmu = fmu_of_text("root", R"(format: withy/1
+bodies: {bar: {type: rigid, mass: 1, center_of_mass: [0.3, 0, 0], inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: bar}}
+loads: {s: {type: hinge-spring, hinge: h, stiffness: 3}}
+outputs:
+  g: {type: gyro, of: bar}
+  ratio: {type: expression, value: sqrt(g.z - 0.1)}
+  inverse: {type: expression, value: 1 / g.z}
+)");
+  Instance3 i(fmu, false);
+  i.initialize();
+  ASSERT_EQ(i.fmi.EnterContinuousTimeMode(i.c), fmi3OK);
+  const double y[] = {0.5, 0.05};
+  ASSERT_EQ(i.fmi.SetContinuousStates(i.c, y, 2), fmi3OK);
+  const std::uint32_t ratio = fmu.reference("ratio");
+  double got = 0;
+  EXPECT_EQ(i.fmi.GetFloat64(i.c, &ratio, 1, &got, 1), fmi3Discard);
+  EXPECT_THAT(i.heard.last, testing::HasSubstr("output 'ratio' is not finite"));
+  EXPECT_NEAR(i.get(fmu.reference("kinetic_energy")), 0.5 * 1.09 * 0.05 * 0.05, 1e-15);
+  EXPECT_NEAR(i.get(fmu.reference("inverse")), 20, 1e-12);
+  EXPECT_NEAR(i.get(fmu.reference("der(h.rate)")), -1.5 / 1.09, 1e-14);
 }
 
 /// Closed loops have no Jacobian: the description offers none, and a host that asks all the same is told why.

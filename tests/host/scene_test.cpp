@@ -1,15 +1,18 @@
 // Scenes in a program.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cfenv>
 #include <clocale>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/host/equations.hpp"
 #include "withy/host/simulation.hpp"
+#include "withy/host/stopped.hpp"
 #include "withy/tests/host/arm.hpp"
 
 namespace withy {
@@ -108,6 +111,89 @@ TEST(HostedScene, reports_every_problem_with_its_place) {
   EXPECT_THROW(static_cast<void>(Scene::read(library(), "no-such-file.yaml")), std::system_error);
   EXPECT_THROW(static_cast<void>(slew().formulation("quadratc").run()), std::runtime_error);
   EXPECT_THROW(static_cast<void>(slew().run().column("shouldr")), std::out_of_range);
+}
+
+TEST(HostedScene, that_no_run_can_begin_with_is_refused_by_its_check_with_the_place) {
+  Scene strict = slew().set("integrator", "{name: imex, rtol: 1e-4}").formulation("consistent");
+  const auto refused = testing::ThrowsMessage<SceneError>(
+      testing::AllOf(HasSubstr("set(integrator="), HasSubstr("/integrator"), HasSubstr("symmetric mass matrix")));
+  EXPECT_THAT([&] { strict.check(); }, refused);
+  EXPECT_THAT([&] { static_cast<void>(strict.run()); }, refused);
+  EXPECT_THAT([&] { host::Simulation simulation(strict); }, refused);
+  EXPECT_THAT([&] { static_cast<void>(strict.compare({"consistent"}, "consistent")); },
+              testing::ThrowsMessage<SceneError>(HasSubstr("symmetric mass matrix")));
+  strict.formulation("quadratic").check();
+  const Scene massless = Scene::parse(library(),
+                                      "format: withy/1\ntime: {end: 1}\n"
+                                      "bodies: {bar: {type: rigid, mass: 1, inertia: [0, 0, 0, 0, 0, 0]}}\n"
+                                      "hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bar}}\n",
+                                      "mine.yaml");
+  EXPECT_THAT([&] { massless.check(); },
+              testing::ThrowsMessage<SceneError>(HasSubstr("mine.yaml:4:17: /hinges/pivot: the mass matrix is")));
+}
+
+TEST(HostedScene, is_compared_in_the_formulations_that_its_integrator_can_treat) {
+  Scene scene = slew().set("integrator", "{name: imex, rtol: 1e-4}").set("time.end", 0.02);
+  const json compared = json::parse(scene.compare({}, "quadratic"));
+  std::vector<std::string> run, left;
+  for (const json& one : compared["runs"]) run.push_back(one["formulation"]);
+  for (const json& one : compared["left_out"]) {
+    left.push_back(one["formulation"]);
+    EXPECT_THAT(one["reason"].get<std::string>(), HasSubstr("symmetric mass matrix"));
+  }
+  EXPECT_EQ(run, (std::vector<std::string>{"ruthless", "quadratic"}));
+  EXPECT_EQ(left, (std::vector<std::string>{"inconsistent", "consistent"}));
+}
+
+/// A load whose root is of a negative number gives no effort: nothing of the masses, which are sound.
+TEST(HostedScene, of_which_something_is_not_finite_is_told_so_by_linear_analyses) {
+  const Scene scene = Scene::parse(library(), R"(format: withy/1
+bodies: {bar: {type: rigid, mass: 1, center_of_mass: [0.3, 0, 0], inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: bar}}
+loads: {n: {type: expression, hinge: h, value: sqrt(h - 5)}, s: {type: hinge-spring, hinge: h, stiffness: 3}}
+)");
+  try {
+    static_cast<void>(scene.linearize());
+    FAIL();
+  } catch (const host::SimulationStopped& e) {
+    EXPECT_EQ(e.status(), "diverged");
+    EXPECT_THAT(e.what(), HasSubstr("load 'n' gives nan on h.0"));
+  }
+  const json point = json::parse(scene.modes())["points"][0];
+  EXPECT_THAT(point["problem"].get<std::string>(), HasSubstr("no steady state was found: load 'n' gives nan on h.0"));
+}
+
+/// Two folders with files of the same name: a triangle, and what is none.
+class InFolders : public testing::Test {
+ protected:
+  InFolders() {
+    for (const char* name : {"own", "other"}) std::filesystem::create_directories(folder_ / name);
+    std::ofstream(folder_ / "own" / "shape.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::ofstream(folder_ / "other" / "shape.obj") << "f 1 2 3\n";
+    std::ofstream(folder_ / "own" / "scene.yaml")
+        << "format: withy/1\ntime: {end: 0.1}\n"
+           "bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], visual: {mesh: shape.obj}}}\n"
+           "hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}\n";
+  }
+  ~InFolders() override {
+    std::filesystem::current_path(began_);
+    std::filesystem::remove_all(folder_);
+  }
+  std::filesystem::path began_ = std::filesystem::current_path();
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("withy-folders-" + std::to_string(::getpid()));
+};
+
+TEST_F(InFolders, a_scene_keeps_its_own_wherever_the_process_goes) {
+  std::filesystem::current_path(folder_ / "own");
+  const Scene scene = Scene::read(library(), "scene.yaml");
+  std::filesystem::current_path(folder_ / "other");
+  scene.check();
+  Scene(scene).set("time.end", 0.05).check();
+  Scene::parse(library(), scene.text(), scene.name(), scene.folder()).check();
+  // What is read here is of this folder.
+  EXPECT_THROW(Scene::parse(library(), scene.text(), scene.name()).check(), SceneError);
+  EXPECT_EQ(scene.name(), "scene.yaml");
 }
 
 TEST(HostedScene, is_interrupted_and_tells_its_progress) {

@@ -193,23 +193,44 @@ outputs:
   axle_seen: {type: hinge, hinge: axle}
 )";
 
+/// The command is constant and a lag begins settled on it: it changes nothing, at the limit of speed neither.
 TEST(ReactionWheel, GivesItsTorqueToTheBusUntilItsSpeedLimit) {
-  const Shown s(wheel_on_bus + R"(loads:
+  for (const char* lag : {"0", "0.5", "2"}) {
+    const Shown s(wheel_on_bus + R"(loads:
   law: {type: expression, value: "0.5", to: nothing}
-  wheel: {type: reaction-wheel, of: law, hinge: axle, torque_limit: 0.2, speed_limit: 8, inertia: 0.1}
-)");
-  const std::vector<double> bus = s["turn_seen.rate"], rate = s["axle_seen.rate"], momentum = s["drive.momentum"];
-  const double reduced = 1 / (1 / 0.1 + 1 / 4.0);  // of the rate between the two
-  for (std::size_t k = 0; k < s.times.size(); ++k) {
-    ASSERT_NEAR(4 * bus[k] + 0.1 * (bus[k] + rate[k]), 0, 1e-9) << "momentum is kept";
-    ASSERT_DOUBLE_EQ(momentum[k], 0.1 * rate[k]);
-    ASSERT_LE(rate[k], 8 + 1e-9);
-    if (s.times[k] < 0.99 * 8 * reduced / 0.2) {
-      ASSERT_NEAR(rate[k], 0.2 * s.times[k] / reduced, 1e-7);
+  wheel: {type: reaction-wheel, of: law, hinge: axle, torque_limit: 0.2, speed_limit: 8, inertia: 0.1, time_constant: )" +
+                  lag + "}\n");
+    const std::vector<double> bus = s["turn_seen.rate"], rate = s["axle_seen.rate"], momentum = s["drive.momentum"];
+    const double reduced = 1 / (1 / 0.1 + 1 / 4.0);  // of the rate between the two
+    for (std::size_t k = 0; k < s.times.size(); ++k) {
+      ASSERT_NEAR(4 * bus[k] + 0.1 * (bus[k] + rate[k]), 0, 1e-9) << "momentum is kept";
+      ASSERT_DOUBLE_EQ(momentum[k], 0.1 * rate[k]);
+      ASSERT_LE(rate[k], 8 + 1e-9) << lag;
+      if (s.times[k] < 0.99 * 8 * reduced / 0.2) {
+        ASSERT_NEAR(rate[k], 0.2 * s.times[k] / reduced, 1e-7);
+      }
     }
+    EXPECT_NEAR(rate.back(), 8, 1e-3);
+    EXPECT_LT(s["drive.motor"].back(), 1e-3);
   }
-  EXPECT_NEAR(rate.back(), 8, 1e-3);
-  EXPECT_LT(s["drive.motor"].back(), 1e-3);
+}
+
+/// T τ̇ = c − τ from τ(0) = c(0) = −c₁ with c = c₁ (2 t − 1): τ = c₁ (2 t − 1 − 2 T (1 − e^(−t/T))), whether the wheel
+/// is at its limit or not. The wheel begins at −8, which the motor drives no further, and is braked as soon as τ > 0.
+TEST(ReactionWheel, AtItsSpeedLimitBrakesAsSoonAsItsTorqueDoes) {
+  const Shown s(wheel_on_bus + R"(initial: {hinges: {axle: {rate: [-8]}}}
+loads:
+  law: {type: expression, value: 0.1 * (2 * t - 1), to: nothing}
+  wheel: {type: reaction-wheel, of: law, hinge: axle, speed_limit: 8, time_constant: 0.4}
+)",
+                {"time.end=2"});
+  for (std::size_t k = 0; k < s.times.size(); ++k) {
+    const double t = s.times[k], torque = 0.1 * (2 * t - 1 - 0.8 * (1 - std::exp(-t / 0.4)));
+    ASSERT_NEAR(s["drive.torque"][k], torque, 1e-8) << t;
+    ASSERT_NEAR(s["drive.motor"][k], std::max(torque, 0.0), 1e-8) << t;
+    ASSERT_GE(s["axle_seen.rate"][k], -8 - 1e-9) << t;
+  }
+  EXPECT_GT(s["axle_seen.rate"].back(), -7);
 }
 
 /// Far above its speed Coulomb's friction is constant: J Ω̇ = −b Ω − τ_c.

@@ -99,6 +99,23 @@ def test_what_python_raises_is_the_reason_of_the_end():
         turntable(law=withy.python_load(failing, frame="arm.tip")).check()
 
 
+def test_what_python_raises_is_the_reason_where_there_is_no_linear_model():
+    def failing(t, w):
+        raise ValueError("no wind today")
+
+    scene = turntable(law=withy.python_load(failing, hinge="axle"))
+    with pytest.raises(withy.SimulationStopped, match=r"load 'law': written in Python .* no wind today") as stopped:
+        scene.linearize()
+    assert stopped.value.status == "load-failed" and type(stopped.value.__cause__) is ValueError
+    assert "no wind today" in scene.modes()["points"][0]["problem"]
+
+
+@pytest.mark.parametrize("wrong", [{"component": 0}, {"sample": 0.1, "delay": 0.1}, {"delay": 0.1}, {"hinge": "axle"}])
+def test_a_load_at_a_frame_refuses_what_is_of_hinges_and_samples(wrong):
+    with pytest.raises(withy.SceneError, match="a load at a frame has none"):
+        turntable(wind=withy.python_load(Wind(), frame="arm.tip", **wrong)).check()
+
+
 class Mute(Exception):
     def __str__(self):
         raise RuntimeError("no text")

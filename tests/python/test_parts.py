@@ -132,6 +132,19 @@ def test_the_linear_model_is_that_of_the_equations():
     assert scene.linearize(["axle"], ["tip.x"])["C"].shape == (1, len(linear["states"]))
 
 
+def test_a_linear_model_without_inputs_or_states_has_matrices_of_their_shapes():
+    driven = withy.load(SCENES / "spin-up.yaml").linearize()  # its one hinge is driven; the beam has modes
+    n, m = len(driven["states"]), len(driven["outputs"])
+    assert n > 0 and m > 0 and driven["inputs"] == []
+    assert [driven[matrix].shape for matrix in "ABCD"] == [(n, n), (n, 0), (m, n), (m, 0)]
+    rigid = boom_on_a_bus()
+    del rigid.bodies["boom"], rigid.hinges["root"], rigid.loads["command"], rigid.outputs["tip"]
+    rigid.motions["turn"] = withy.constant_rate(hinge="axle", rate=1)
+    nothing = rigid.linearize()
+    assert nothing["states"] == [] and nothing["outputs"] == ["axle.0", "axle.0.rate"]
+    assert [nothing[matrix].shape for matrix in "ABCD"] == [(0, 0), (0, 0), (2, 0), (2, 0)]
+
+
 def test_the_scene_of_the_documentation_runs(capsys):
     text = (SCENES.parent / "docs/python.md").read_text().partition("## Scenes in code")[2]
     names = {"withy": withy}

@@ -8,6 +8,8 @@ import pathlib
 import pickle
 import re
 import signal
+import subprocess
+import sys
 import threading
 
 import numpy
@@ -51,6 +53,9 @@ def test_a_run_is_a_table_by_names(slew):
     assert numpy.shares_memory(result["shoulder"], result.table)
     # As results.csv calls it.
     assert (result["link1.bending_y.1"] == result["link1.bending_y[1]"]).all() and "link1.bending_y.1" not in list(result)
+    assert result.units["link1.bending_y.1"] == result.units["link1.bending_y[1]"] == ""
+    with pytest.raises(KeyError, match="did you mean 'shoulder'"):
+        result.units["shoulde"]
     assert withy.Simulation(slew).outputs["link1.bending_y.2.rate"] == 0
     assert result.certificate["formulation"]["name"] == "quadratic"
     with pytest.raises(KeyError, match="did you mean 'shoulder'"):
@@ -93,6 +98,74 @@ def test_a_scene_that_set_has_completed_can_be_pickled():
     assert broken != TURNTABLE
     mended = withy.loads(broken, check=False).set("bodies.table.mass", 3)
     assert pickle.loads(pickle.dumps(mended)).to_yaml() == mended.to_yaml()
+
+
+def test_a_scene_keeps_the_files_of_its_folder_wherever_the_process_goes(tmp_path, monkeypatch):
+    for name, triangle in (("own", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), ("other", "f 1 2 3\n")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "shape.obj").write_text(triangle)  # the other one has no vertices
+    body = "{type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], visual: {mesh: shape.obj}}"
+    (tmp_path / "own" / "scene.yaml").write_text(TURNTABLE.replace("bodies: {", f"bodies: {{ball: {body}, ").replace(
+        "hinges: {", "hinges: {pin: {type: weld, parent: table, child: ball}, "))
+    monkeypatch.chdir(tmp_path / "own")
+    scene = withy.load("scene.yaml")
+    built = withy.Scene(time={"end": 1}, bodies=dict(scene.bodies), hinges=dict(scene.hinges))
+    built.check()
+    monkeypatch.chdir(tmp_path / "other")
+    scene.check()
+    scene.copy().set("time.end", 1).check()
+    scene.copy().set("time.end", 1).unset("time.end").check()
+    pickle.loads(pickle.dumps(scene)).check()
+    for changed in (scene.copy(), built):
+        changed.bodies["ball"] = {**changed.bodies["ball"], "mass": 2}
+        changed.check()
+    with pytest.raises(withy.SceneError, match="shape.obj"):
+        withy.loads((tmp_path / "own" / "scene.yaml").read_text(), "scene.yaml")
+
+
+def test_a_check_is_that_of_the_program(slew):
+    strict = slew.copy().set("integrator", {"name": "imex", "rtol": 1e-4}).set("formulation", "consistent")
+    for refused in (strict.check, strict.run, lambda: withy.Simulation(strict)):
+        with pytest.raises(withy.SceneError, match="/integrator: .*symmetric mass matrix"):
+            refused()
+    compared = strict.set("time.end", 0.02).compare()
+    assert [one["formulation"] for one in compared["runs"]] == ["ruthless", "quadratic"]
+    assert [left["formulation"] for left in compared["left_out"]] == ["inconsistent", "consistent"]
+    # Nothing resists the turn: no run can begin.
+    point = TURNTABLE.replace("inertia: [0.1, 0.1, 0.2, 0, 0, 0]", "inertia: [0, 0, 0, 0, 0, 0]")
+    with pytest.raises(withy.SceneError, match="/hinges/axle: the mass matrix is singular"):
+        withy.loads(point)
+
+
+SET_AND_READ = """
+import threading, withy
+scene = withy.loads('''
+format: withy/1
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+''')
+many = {f"f{i}": {"position": [i, 0, 0]} for i in range(200)}
+scene.set("bodies.table.frames", many)
+over, done = threading.Event(), []
+def work():
+    while not over.is_set():
+        done.append(scene.modes()["formulation"])
+threads = [threading.Thread(target=work) for _ in range(2)]
+for thread in threads:
+    thread.start()
+for k in range(200):
+    scene.set("bodies.table.frames", many).set("bodies.table.frames.f7.position", [k, 0, 0])
+over.set()
+for thread in threads:
+    thread.join()
+assert set(done) == {"quadratic"}
+"""
+
+
+def test_a_scene_is_set_by_one_thread_while_others_work_on_it():
+    # In a process of its own: values that are read while they are written end it.
+    done = subprocess.run([sys.executable, "-c", SET_AND_READ], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_a_misspelt_set_is_taken_back(slew):

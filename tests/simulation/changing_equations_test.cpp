@@ -36,8 +36,10 @@ struct Ladder {
     ChangingEquations changing(rungs, std::move(stretches));
     options.changing = &changing;
     outputs.clear();
-    return simulate(*made.scene.model, changing, *made.scene.integrator, made.scene.initial, options,
-                    [&](const State& s) { outputs.push_back(s); });
+    RunSummary summary = simulate(*made.scene.model, changing, *made.scene.integrator, made.scene.initial, options,
+                                  [&](const State& s) { outputs.push_back(s); });
+    evaluations = changing.evaluations();
+    return summary;
   }
   RunSummary plain(std::size_t rung) {
     options.changing = nullptr;
@@ -48,6 +50,7 @@ struct Ladder {
   std::vector<Rung> rungs;
   RunOptions options;
   std::vector<State> outputs;
+  std::vector<std::size_t> evaluations;  ///< of the last run, in each rung
 };
 
 double apart(const State& a, const State& b) {
@@ -107,11 +110,14 @@ TEST(ChangingEquations, a_checkpoint_on_either_side_of_a_change_is_resumed_bit_b
     const std::vector<Stretch> stretches = {{0, 0, 0.4}, {1, 0.4, 1}};
     const RunSummary whole = l.run(stretches);
     ASSERT_TRUE(kept) << whole.message;
+    const std::vector<std::size_t> evaluations = l.evaluations;
     l.options.resume = &*kept;
     const RunSummary resumed = l.run(stretches);
     EXPECT_EQ(resumed.final.y, whole.final.y) << at;
     EXPECT_EQ(resumed.energy_drift, whole.energy_drift) << at;
     EXPECT_EQ(resumed.peak_deflection, whole.peak_deflection) << at;
+    EXPECT_GT(evaluations[0], 0U) << at;
+    EXPECT_EQ(l.evaluations, evaluations) << "those before the checkpoint count, at " << at;
   }
 }
 

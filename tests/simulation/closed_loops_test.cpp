@@ -3,6 +3,8 @@
 /// and by what is conserved.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -306,6 +308,38 @@ TEST(ClosedLoops, RunsAreResumedBitByBitAndEvaluationsAllocateNothing) {
   work.poison();
   ASSERT_TRUE(made.equations->derivatives(1, whole.final.y, again, work).ok());
   EXPECT_EQ(again, y_dot);
+}
+
+/// An arm on a hinge with 3 N m, its end a metre away welded to the world: the weld's force and its moment both hold
+/// the one angle. The least of λ_f² + λ_m² with λ_m = moment / ℓ is f = τ r/(r² + ℓ²), m = τ ℓ²/(r² + ℓ²), with ℓ = r
+/// half each. A frame that nothing joins, ten metres off, is no length of anything.
+TEST(ClosedLoops, ReactionsOfRedundantLoopsDoNotDependOnFramesThatNothingJoins) {
+  for (const char* more : {"", ", unused: {position: [0, 0, 10]}"}) {
+    const Made made(std::string(R"(format: withy/1
+gravity: [0, 0, 0]
+time: {end: 0.1}
+bodies:
+  arm: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0], frames: {end: {position: [1, 0, 0]})") +
+                    more + R"(}}
+  bob: {type: rigid, mass: 1, center_of_mass: [0.5, 0, 0], inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  a: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}
+  b: {type: revolute, axis: [0, 0, 1], parent: world, child: bob, offset: {position: [0, 0.5, 0]}}
+constraints:
+  held: {type: hinge, hinge: weld, a: world, b: arm.end, offset: {position: [1, 0, 0]}}
+loads: {torque: {type: hinge-effort, hinge: a, law: constant, value: 3}}
+outputs: {on: {type: reaction, constraint: held}}
+)");
+    const std::vector<double> on = read_sensors(made, made.scene.initial);
+    ASSERT_EQ(on.size(), 6U);
+    std::vector<double> sizes;
+    for (const double x : on) sizes.push_back(std::abs(x));
+    std::sort(sizes.begin(), sizes.end());
+    EXPECT_NEAR(sizes[3], 0, 1e-12) << more;
+    EXPECT_NEAR(sizes[4], 1.5, 1e-12) << "force or moment" << more;
+    EXPECT_NEAR(sizes[5], 1.5, 1e-12) << "force or moment" << more;
+    EXPECT_NEAR(on[1], -1.5, 1e-12) << "the force on the arm's end" << more;
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "withy/study/accuracy.hpp"
 #include "withy/study/input_error.hpp"
@@ -199,6 +200,48 @@ TEST(StudyAdvice, ABodyThatNeedsLessIsRuthlessAlone) {
   ASSERT_TRUE(advice.choice) << advice.trouble;
   EXPECT_EQ(advice.choice->point.formulation, "quadratic");
   EXPECT_THAT(advice.choice->point.bodies, testing::ElementsAre(testing::Pair("mast", "ruthless")));
+}
+
+/// A torque that rises from 3 s on turns a hub past 0.02 rad at 3.18 s, where an event ends the run; the 8 s of the
+/// scene would turn it many times as far. Measured is what the run does.
+TEST(StudyAdvice, EndsWhereAnEventEndsTheRun) {
+  const Prepared prepared = prepare(SceneValues::parse(R"(
+format: withy/1
+integrator: {name: dopri5, rtol: 1e-7, atol: 1e-9}
+time: {end: 8, output: 0.01}
+bodies:
+  hub: {type: rigid, mass: 8, inertia: [1, 1, 2, 0, 0, 0]}
+  l: {type: beam, length: 2.5, mass_per_length: 0.6, bending_y: {stiffness: 60, modes: 2, family: clamped-free}, damping_ratio: 0.008}
+  p: {type: rigid, mass: 0.5, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+hinges:
+  h: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  r: {type: weld, parent: hub, child: l}
+  t: {type: weld, parent: l.tip, child: p}
+loads:
+  e: {type: hinge-effort, hinge: h, law: table, table: [[0, 0], [0.4, 0.2], [0.5, 0], [3, 0], [5, 40], [7, 0]]}
+  k: {type: hinge-spring, hinge: h, stiffness: 2, damping: 0.5}
+events: {st: {hinge: h, value: 0.02, direction: up, stop: true}}
+)",
+                                                       "stopped.yaml"),
+                                    plugins());
+  const Outputs outputs(prepared.model());
+  const Candidates candidates =
+      candidates_for(prepared, plugins(), {{"ruthless", "quadratic"}, {""}, {1, 2}, {"dopri5"}, {1e-3, 1e-5}, {}});
+  Evaluator evaluator(prepared, plugins(), outputs, {});
+  std::vector<std::string> findings;
+  const Advice advice = advise(evaluator, candidates, Accuracy::parse("5%"),
+                               [&](const std::string& finding) { findings.push_back(finding); });
+  ASSERT_TRUE(advice.choice) << advice.trouble;
+  EXPECT_THAT(advice.until, HasSubstr("event 'st' ends the run at 3.176 s"));
+  EXPECT_EQ(findings.front(), advice.until);
+  EXPECT_NEAR(advice.choice->walk.time, simulate(prepared, plugins(), {}).reached, 1e-9);
+  std::size_t hinges = 0;
+  for (std::size_t i = 0; i < outputs.list().size(); ++i)
+    if (outputs.list()[i].name == "h") {
+      ++hinges;
+      EXPECT_NEAR(advice.yardstick->reference.ranges[i], 0.02, 2e-4) << "where the event is";
+    }
+  EXPECT_EQ(hinges, 1U);
 }
 
 }  // namespace

@@ -224,5 +224,38 @@ TEST(CoarseSteps, are_of_second_order_and_stable_however_stiff) {
   for (const double y : stepper->state().y) EXPECT_LT(std::abs(y), 100);
 }
 
+// A double pendulum that turns over: two runs of it, whatever their tolerances, part within some swings, and two
+// formulations as far. Of its first second an error is known.
+TEST(Estimate, at_any_cost_is_none_where_another_run_of_the_same_equations_ends_elsewhere) {
+  const auto pendulum = [](double end) {
+    SceneValues values = SceneValues::parse(R"(
+format: withy/1
+formulation: quadratic
+gravity: [0, -9.81, 0]
+integrator: {name: dopri5, rtol: 1e-7, atol: 1e-9}
+time: {end: 1, output: 0.05}
+bodies:
+  a: {type: beam, length: 1, mass_per_length: 0.8, bending_y: {stiffness: 200, modes: 1, family: clamped-free}}
+  b: {type: beam, length: 1, mass_per_length: 0.8, bending_y: {stiffness: 200, modes: 1, family: clamped-free}}
+  c: {type: rigid, mass: 1, inertia: [0.02, 0.02, 0.02, 0, 0, 0]}
+hinges:
+  h: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
+  g: {type: revolute, axis: [0, 0, 1], parent: a.tip, child: b}
+  w: {type: weld, parent: b.tip, child: c}
+initial: {hinges: {h: {position: ["80 deg"]}, g: {position: ["40 deg"]}}}
+)",
+                                            "pendulum.yaml");
+    RunSettings settings;
+    settings.estimate = Estimate::always;
+    return run(prepare(values.set("time.end", Value(end), "the test"), plugins()), plugins(), settings).certificate;
+  };
+  const Certificate brief = pendulum(1);
+  ASSERT_TRUE(brief.estimate) << brief.without_estimate;
+  EXPECT_LT(brief.estimate->distances.hinges.at("h"), 0.1);
+  const Certificate sensitive = pendulum(25);
+  EXPECT_FALSE(sensitive.estimate);
+  EXPECT_THAT(sensitive.without_estimate, testing::HasSubstr("not known: the motion is sensitive"));
+}
+
 }  // namespace
 }  // namespace withy::study

@@ -20,8 +20,10 @@ struct Limited {
     const Prepared prepared = prepare(SceneValues::parse("format: withy/1\n" + rest, "limited.yaml"), plugins());
     RunSettings settings;
     settings.look_beyond = false;
-    summary = run(prepared, plugins(), settings).summary;
+    const CertifiedRun done = run(prepared, plugins(), settings);
+    summary = done.summary;
     all = indicators(prepared.scene, summary);
+    certified = done.certificate.indicators;
   }
   /// The limit of which the text is; one of NaN where there is none.
   [[nodiscard]] Indicator of(const std::string& text) const {
@@ -31,6 +33,7 @@ struct Limited {
   }
   RunSummary summary;
   std::vector<Indicator> all;
+  std::vector<Indicator> certified;  ///< all that a certificate has
 };
 
 std::string sagging(const std::string& gravity, const std::string& formulation) {
@@ -148,6 +151,30 @@ initial: {hinges: {axle: {rate: [0.5]}}, bodies: {arm: {modes: [0.02]}}}
   EXPECT_EQ(coarse.all.front().text, words);
   EXPECT_LT(Limited("integrator: {name: gauss, step: 0.01}\n" + boom).of(words).use(), 1);
   EXPECT_TRUE(std::isnan(Limited("integrator: {name: dopri5, rtol: 1e-6, atol: 1e-9}\n" + boom).of(words).value));
+}
+
+// A cantilever that vibrates in its third mode alone, 54.53 rad/s: gauss with steps of 0.1 s keeps its energy, and the
+// phase is any after a few steps. The lowest frequency, 3.1 rad/s, is followed.
+TEST(Limits, OfFixedStepsAreThoseOfTheModeThatHasTheEnergy) {
+  const std::string beam = R"(time: {end: 4, output: 0.1}
+bodies: {b: {type: beam, length: 4, mass_per_length: 1, bending_y: {stiffness: 200, modes: 5, family: clamped-free}}}
+hinges: {r: {type: weld, parent: world, child: b}}
+initial: {bodies: {b: {modes: [0, 0, 0.01, 0, 0]}}}
+)";
+  const double third = std::pow(7.8547574 / 4, 2) * std::sqrt(200);
+  const auto of = [&](const std::string& integrator) {
+    const Limited run("integrator: " + integrator + "\n" + beam);
+    EXPECT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
+    for (const Indicator& i : run.certified)
+      if (i.text.find("step times the frequency of what vibrates") == 0) return i;
+    return Indicator{"", NAN, NAN, ""};
+  };
+  const Indicator coarse = of("{name: gauss, step: 0.1}");
+  EXPECT_NEAR(coarse.value, 0.1 * third, 1e-3 * third * 0.1);
+  EXPECT_GT(coarse.use(), 5);
+  EXPECT_THAT(coarse.text, HasSubstr("54.5 rad/s, most of it b.bending_y[3]"));
+  EXPECT_LT(of("{name: gauss, step: 0.01}").use(), 1);
+  EXPECT_TRUE(std::isnan(of("{name: dopri5, rtol: 1e-6, atol: 1e-9}").value)) << "its steps are of its own choice";
 }
 
 // What a plate bends like is not said: the stricter of both limits holds, that of bending across the plane of rotation.

@@ -238,5 +238,38 @@ hinges:
   EXPECT_THAT(hung, HasSubstr(", by weight as"));
 }
 
+/// A weight on a spring of 3 N m/rad, pushed: by a force that stays, which is a state that stays, and by loads that are
+/// functions of time themselves, where the balance is of one instant.
+TEST(Stability, OfABalanceOfALoadThatChangesWithTimeIsNotTold) {
+  const auto pushed = [](const std::string& load) {
+    return "bodies: {b: {type: rigid, mass: 2, inertia: [1, 4, 4.5, 0, 0, 0], frames: {e: {position: [1, 0, 0]}}}}\n"
+           "hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}\n"
+           "loads:\n  s: {type: hinge-spring, hinge: h, stiffness: 3, damping: 0.5}\n  f: " +
+           load + "\n";
+  };
+  const Equilibrium still = balance_of(pushed("{type: force, frame: b.e, value: [0, 1, 0]}"));
+  EXPECT_TRUE(still.stays) << still.changing;
+  ASSERT_TRUE(still.stability.has_value());
+  EXPECT_TRUE(still.stability->stable());
+  for (const std::string load : {"{type: gravity-gradient, rate: 0.8, vertical: [1, 0.4, 0], normal: [0, 0, 1]}",
+                                 "{type: force, frame: b.e, law: sine, amplitude: [0, 1, 0], period: 7, phase: 0.5}",
+                                 "{type: force, frame: b.e, law: table, table: [[0, 0, 1, 0], [10, 0, -2, 0]]}"}) {
+    const Equilibrium found = balance_of(pushed(load));
+    ASSERT_TRUE(found.steady.converged) << load;
+    EXPECT_FALSE(found.stays) << load;
+    EXPECT_TRUE(found.instant) << load;
+    EXPECT_FALSE(found.stability.has_value()) << load;
+    EXPECT_THAT(found.changing, HasSubstr("The load 'f' changes with time")) << load;
+    const Prepared prepared = scene_of(pushed(load), {});
+    const ModesAt at = modes_at({prepared, prepared.scene.initial, {}}, false);
+    ASSERT_TRUE(at.steady && at.steady->stays) << load;
+    EXPECT_FALSE(*at.steady->stays) << load;
+    EXPECT_TRUE(at.frozen()) << load;
+  }
+  // What holds the hinge bears it.
+  EXPECT_TRUE(
+      balance_of(pushed("{type: force, frame: b.e, law: sine, amplitude: [0, 1, 0], period: 7}"), {{"h"}, {}}).stays);
+}
+
 }  // namespace
 }  // namespace withy::study

@@ -1,11 +1,12 @@
 // Plots over time: a panel for each group of columns, made when it comes into sight.
 import uPlot from 'uplot';
-import { dashes, drawn, palette, pen_sample, resampled } from './data.js';
+import { dashes, drawn, palette, pen_sample } from './data.js';
+import { difference, nearest_own, own_before, place_of } from './rows.js';
 import { is_rounding, label_of } from './ticks.js';
 
 const most_shown = 8; // curves of a panel at first
 
-const number = v => v == null ? '–' : v === 0 ? '0' : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(3) : v.toPrecision(5);
+const number = v => v == null || Number.isNaN(v) ? '–' : v === 0 ? '0' : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(3) : v.toPrecision(5);
 
 class Panel {
   constructor(owner, group) {
@@ -13,7 +14,7 @@ class Panel {
     this.group = group;
     this.log = false;
     this.element = document.createElement('figure');
-    this.element.innerHTML = `<figcaption><span class="name"></span><button class="log" aria-pressed="false" title="Logarithms of magnitudes (L)">log</button></figcaption><div class="chart"></div><div class="more"></div>`;
+    this.element.innerHTML = `<figcaption><span class="name"></span><button class="log" aria-pressed="false" title="Logarithms of magnitudes (L)">log</button></figcaption><div class="chart"></div><p class="untold soft" hidden></p><div class="more"></div>`;
     this.element.querySelector('.name').textContent = `${group.title}${group.title.endsWith(group.unit) ? '' : `  [${group.unit}]`}`;
     this.button = this.element.querySelector('.log');
     this.button.onclick = () => this.toggle_log();
@@ -22,7 +23,10 @@ class Panel {
 
   // Numbers are read when the panel comes into sight.
   make() {
-    const { series } = this.group, lively = series.filter(s => !s.flat);
+    const { series, limit } = this.group;
+    // What is nearest to its limit, or farthest beyond, is seen first.
+    if (limit) series.sort((a, b) => b.greatest - a.greatest || 0);
+    const lively = series.filter(s => !s.flat);
     // What never changes is there to be switched on.
     for (const s of series) s.on = (lively.length ? lively : series).slice(0, most_shown).includes(s);
     this.chips();
@@ -35,7 +39,7 @@ class Panel {
     more.replaceChildren();
     for (const series of this.group.series.filter(s => !s.on)) {
       const chip = document.createElement('button');
-      chip.textContent = series.name + (series.flat ? ` = ${number(series.of[0].y[0])}` : '');
+      chip.textContent = series.name + (series.flat ? ` = ${number(series.of[0].y[0])}` : this.group.limit && series.greatest > -Infinity ? ` ≤ ${number(series.greatest)}` : '');
       chip.className = 'chip';
       chip.setAttribute('aria-pressed', series.on);
       chip.onclick = () => { series.on = !series.on; chip.setAttribute('aria-pressed', series.on); this.draw(); };
@@ -51,37 +55,69 @@ class Panel {
 
   curves() {
     const { differences, reference, runs } = this.owner;
-    const shown = this.group.series.filter(s => s.on);
-    const out = [];
+    const shown = this.group.series.filter(s => s.on), out = [], said = [];
     shown.forEach((series, k) => {
       const of = series.of.find(o => o.run === runs[reference]);
-      for (const { run, t, y } of series.of) {
+      for (const own of series.of) {
+        const { run, t, spans } = own;
         if (run.hidden) continue;
         const lean = shown.length === 1 && runs.length > 1;
         const pen = { color: lean ? run.index : k, dash: runs.length > 1 ? run.index : 0 };
-        let label = runs.length > 1 ? (shown.length === 1 ? run.label : `${series.name} (${run.label})`) : series.name;
-        let values = y, times = t;
-        if (differences && !this.group.limit) {
-          if (!of || of.run === run) continue;
-          times = of.t;
-          values = resampled(t, y, of.t).map((v, i) => v == null ? null : v - of.y[i]);
-          label += ' − reference';
+        const label = runs.length > 1 ? (shown.length === 1 ? run.label : `${series.name} (${run.label})`) : series.name;
+        if (!differences || this.group.limit) {
+          out.push({ pen, label, t, values: own.y, y: drawn(own.y, this.log), spans, parted: false });
+        } else if (of && of.run !== run) {
+          const less = difference(own.whole, of.whole);
+          said.push({ label, ...less });
+          out.push({ pen, label: `${label} − reference`, t: less.t, values: less.y, y: drawn(less.y, this.log), spans: false, parted: less.gaps });
         }
-        out.push({ pen, label, t: times, y: drawn(values, this.log) });
       }
     });
+    this.say(said);
     return out;
   }
 
+  // What of differences nobody can tell.
+  say(differences) {
+    const parted = differences.filter(d => d.gaps && d.times), lines = differences.filter(d => !d.times)
+      .map(d => `${d.label}: no difference can be told, as this page has no row of the run and the reference at one time.`);
+    const counts = [...new Set(parted.map(d => d.times))].join(', ');
+    if (parted.length) lines.push(`Differences at the ${counts} times at which this page has rows of both runs; what lies between dots is not told.`);
+    const said = this.element.querySelector('.untold');
+    said.hidden = !lines.length;
+    said.textContent = lines.join(' ');
+  }
+
+  // What the legend says of a curve. Where its rows were drawn by stretches, which of a stretch's times a number is of
+  // is not known: it says the least and the greatest; and of rows at another time than the one that it shows, when.
+  told_at(u, curve, value, place) {
+    if (place == null) return '–';
+    const time = u.data[0][place];
+    if (!curve.spans) return time === u.data[0][u.legend.idxs[0]] ? number(value) : `${number(value)} (at ${number(time)} s)`;
+    const { t, values } = curve, first = this.stretch_of(curve, place, time), ends = [values[first], values[first + 1]];
+    const told = ends[0] === ends[1] ? number(ends[0]) : `${number(Math.min(...ends))} … ${number(Math.max(...ends))}`;
+    return this.shared ? told : `${told} (${number(t[first])} … ${number(t[first + 1])} s)`;
+  }
+  stretch_of(curve, place, time) {
+    const i = this.shared ? place : place_of(curve.t, time);
+    return i - i % 2;
+  }
+  time_at(curves, value, place) {
+    if (place == null || !this.shared || !curves[0]?.spans) return number(value);
+    const { t } = curves[0], first = place - place % 2;
+    return t[first] === t[first + 1] ? number(value) : `${number(t[first])} … ${number(t[first + 1])}`;
+  }
+
   aligned(curves) {
+    this.shared = true;
     if (curves.length === 0) return [[0, 1], [null, null]];
-    const same = curves.every(c => c.t === curves[0].t || (c.t.length === curves[0].t.length && c.t.every((v, i) => v === curves[0].t[i])));
-    if (same) return [curves[0].t, ...curves.map(c => c.y)];
+    this.shared = curves.every(c => c.t === curves[0].t || (c.t.length === curves[0].t.length && c.t.every((v, i) => v === curves[0].t[i])));
+    if (this.shared) return [curves[0].t, ...curves.map(c => c.y)];
     return uPlot.join(curves.map(c => [Array.from(c.t), Array.from(c.y)]));
   }
 
   draw() {
-    const holder = this.element.querySelector('.chart'), curves = this.curves(), dark = this.owner.dark;
+    const holder = this.element.querySelector('.chart'), curves = this.drawn = this.curves(), dark = this.owner.dark;
     const colours = palette(dark), ink = dark ? '#c9d1d9' : '#24292f', faint = dark ? '#2d333b' : '#e3e7eb';
     const [least, most] = this.chart ? [this.chart.scales.x.min, this.chart.scales.x.max] : [];
     this.chart?.destroy();
@@ -91,7 +127,11 @@ class Panel {
     this.chart = new uPlot({
       width: Math.max(260, holder.clientWidth),
       height: 230,
-      cursor: { sync: { key: 'withy' }, drag: { x: true, y: false } },
+      cursor: {
+        sync: { key: 'withy' },
+        drag: { x: true, y: false },
+        dataIdx: (u, k, place) => k > 0 && curves[k - 1] ? nearest_own(u.data[k], place, curves[k - 1].parted) : place,
+      },
       scales: { x: { time: false }, y: this.log ? { distr: 3 } : { range: (_, low, high) => range(low, high, limit) } },
       legend: {
         live: true,
@@ -106,14 +146,14 @@ class Panel {
         },
       ],
       series: [
-        { label: 't [s]', value: (_, v) => number(v) },
+        { label: 't [s]', value: (_, v, __, place) => this.time_at(curves, v, place) },
         ...curves.map(c => ({
           label: c.label,
           stroke: colours[c.pen.color % colours.length],
           dash: dashes[c.pen.dash % dashes.length],
           width: 1.75,
           points: { show: false, filter: (u, k) => lone(u.data[k]) }, // runs of other times leave no gaps
-          value: (_, v) => number(v),
+          value: (u, v, _, place) => this.told_at(u, c, v, place),
         })),
       ],
       hooks: {
@@ -164,15 +204,10 @@ class Panel {
     const t = this.chart.data[0];
     if (this.chart.cursor.idx != null) this.told = -1;
     if (this.chart.cursor.idx != null || t.length === 0) return;
-    let low = 0, high = t.length - 1;
-    const now = this.owner.time + 1e-9 * (t[high] - t[0]); // times have been rounded
-    while (low < high) {
-      const middle = (low + high + 1) >> 1;
-      if (t[middle] <= now) low = middle; else high = middle - 1;
-    }
+    const low = place_of(t, this.owner.time + 1e-9 * (t[t.length - 1] - t[0])); // times have been rounded
     if (low === this.told) return;
     this.told = low;
-    this.chart.setLegend({ idx: low }, false);
+    this.chart.setLegend({ idxs: this.chart.data.map((values, k) => k > 0 && this.drawn[k - 1] ? own_before(values, low, this.drawn[k - 1].parted) : low) }, false);
   }
 
   resize() {

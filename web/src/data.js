@@ -1,4 +1,5 @@
 // What the program wrote into the page, as arrays, and what is computed of it.
+import { of_rows } from './rows.js';
 
 // What base64 stands for. The loop takes a tenth of the time of Uint8Array.from with a function.
 function bytes(text) {
@@ -23,11 +24,14 @@ function lazy(object, name, make) {
 
 // Puts arrays of numbers in the place of their indices.
 export function unpack(run) {
-  const { animation, arrays } = run;
+  const { animation, arrays, table } = run;
   const doubles = index => new Float64Array(bytes(arrays[index]));
-  for (const column of run.table.columns) {
+  // Of two rows a stretch has both, in their order; of one that is left over it has it twice.
+  const of_table = index => table.stride > 2 ? doubles(index) : doubles(index).subarray(0, table.rows);
+  // Pages of earlier versions have none that are derived.
+  for (const column of [...table.columns, ...table.derived ??= []]) {
     const { data, samples } = column;
-    lazy(column, 'data', () => doubles(data));
+    lazy(column, 'data', () => of_table(data));
     if (samples != null) lazy(column, 'samples', () => doubles(samples));
   }
   animation.times = doubles(animation.times);
@@ -42,7 +46,7 @@ export function unpack(run) {
   for (const arrow of animation.arrows ??= []) arrow.numbers = new Float32Array(bytes(arrays[arrow.numbers]));
   for (const series of run.validity) {
     const { data } = series;
-    lazy(series, 'data', () => doubles(data));
+    lazy(series, 'data', () => series.of === 'rows' ? of_table(data) : doubles(data));
   }
   run.time = run.table.columns[0].data;
   delete run.arrays;
@@ -99,65 +103,77 @@ function attitude(w, x, y, z) {
   return [unwrapped(a), b, unwrapped(c)];
 }
 
-// Several columns by name, and whether each has numbers at the moments of the animation; null where one is missing.
-function together(run, names) {
-  const columns = names.map(name => run.table.columns.find(c => c.name === name));
+// What is computed of several columns: of all rows where the page has them, or else what the program has computed of
+// all. Pages of earlier versions have neither of long runs: it is of the moments of the animation, as the page says then.
+// null where a column is missing.
+function computed(run, name, names, compute) {
+  const columns = names.map(n => run.table.columns.find(c => c.name === n));
   if (columns.some(c => !c)) return null;
-  const sampled = 'samples' in columns[0];
-  return { t: sampled ? run.animation.times : run.time, values: () => columns.map(c => sampled ? c.samples : c.data) };
+  const derived = run.table.derived?.find(c => c.name === name);
+  if (derived) return of_rows(run, derived);
+  if (!(run.table.stride > 2)) return { t: run.time, y: () => compute(columns.map(c => c.data)), spans: false, whole: null };
+  return { ...of_moments(run, () => compute(columns.map(c => c.samples))), few: true };
 }
+const of_moments = (run, y) => {
+  const { times } = run.animation;
+  return { t: times, y, spans: false, whole: { t: times, y, every: false } };
+};
+const few_told = run => `, at ${run.animation.times.length} moments alone`;
 
 // Angles that turn far in any of the runs: they are told in turns in all of them, else their curves could not be compared.
 const far = 20 * Math.PI;
 const turning = runs => new Set(runs.flatMap(run => run.table.columns.filter(c => c.unit === 'rad' && c.data.some(v => Math.abs(v) > far)).map(c => c.name)));
 
-// The quantities of a run: {group, name, unit, t, y, limit?}, groups in the order of the page; y is made when asked for.
+// The quantities of a run: {group, name, unit, t, y, spans, whole, limit?} as of_rows has them, groups in the order of
+// the page.
 export function quantities(run, turns = turning([run])) {
   const out = [];
-  const add = (group, name, unit, t, y, more = {}) => out.push(lazy({ group, name, unit, t, ...more }, 'y', y));
+  const add = (group, name, unit, { few, y, whole, ...from }, more = {}) => {
+    const quantity = lazy({ group: group + (few ? few_told(run) : ''), name, unit, ...from, ...more }, 'y', y);
+    out.push(lazy(quantity, 'whole', () => whole ? lazy({ ...whole }, 'y', whole.y) : { t: quantity.t, y: quantity.y, every: true }));
+  };
   // Angles that say again what a quaternion beside them says.
   const told = new Set(run.table.columns.filter(c => c.name.endsWith('.qw')).flatMap(c => ['rx', 'ry', 'rz'].map(r => c.name.replace(/qw$/, r))));
   // Coordinates and rates of hinges and modes stand before the energies, outputs of the scene behind them.
   const states = run.table.columns.findIndex(c => c.name === 'kinetic_energy');
   for (const [place, column] of [...run.table.columns.entries()].slice(1)) {
-    const { name, unit } = column, data = () => column.data, state = states < 0 || place < states;
+    const { name, unit } = column, data = of_rows(run, column), state = states < 0 || place < states;
     const last = name.slice(name.lastIndexOf('.') + 1);
     const quaternion = /^(.*)\.q([wxyz])$/.exec(name);
     if (quaternion) {
       if (quaternion[2] !== 'w') continue;
-      const base = quaternion[1];
-      const parts = together(run, ['qw', 'qx', 'qy', 'qz'].map(q => `${base}.${q}`));
-      if (!parts) continue;
-      const angles = lazy({}, 'all', () => attitude(...parts.values()));
-      for (const i of [0, 1, 2]) add(`Attitude of ${base}: turns about x, y, z in this order`, `${base}.${'xyz'[i]}`, 'deg', parts.t, () => angles.all[i]);
-    } else if ((name.endsWith('_energy') || name === 'work') && unit === 'J') add('Energies', name, unit, run.time, data);
-    else if (/^(linear|angular)_momentum\./.test(name)) add(name.startsWith('linear') ? 'Linear momentum' : 'Angular momentum', name, unit, run.time, data);
-    else if (/\.tip\.deflection_[xyz]$/.test(name)) add('Deflection of tips', name, unit, run.time, data);
-    else if (/\.tip\.[xyz]$/.test(name)) add('Position of tips', name, unit, run.time, data);
-    else if (/\.motion_effort(\.\d+)?$/.test(name)) add(`Effort of motions, ${unit}`, name, unit, run.time, data);
-    else if (state && /\.rate(\.\d+)?$/.test(name)) add(unit === 'rad/s' ? 'Rates of hinges' : unit === 'm/s' ? 'Speeds of hinges' : 'Rates of modal coordinates', name, unit && unit !== '1' ? unit : '1/s', run.time, data);
+      const base = quaternion[1], parts = ['qw', 'qx', 'qy', 'qz'].map(q => `${base}.${q}`);
+      let angles = null;
+      for (const [i, axis] of ['x', 'y', 'z'].entries()) {
+        const angle = computed(run, `${base}.${axis}`, parts, columns => (angles ??= attitude(...columns))[i]);
+        if (angle) add(`Attitude of ${base}: turns about x, y, z in this order`, `${base}.${axis}`, 'deg', angle);
+      }
+    } else if ((name.endsWith('_energy') || name === 'work') && unit === 'J') add('Energies', name, unit, data);
+    else if (/^(linear|angular)_momentum\./.test(name)) add(name.startsWith('linear') ? 'Linear momentum' : 'Angular momentum', name, unit, data);
+    else if (/\.tip\.deflection_[xyz]$/.test(name)) add('Deflection of tips', name, unit, data);
+    else if (/\.tip\.[xyz]$/.test(name)) add('Position of tips', name, unit, data);
+    else if (/\.motion_effort(\.\d+)?$/.test(name)) add(`Effort of motions, ${unit}`, name, unit, data);
+    else if (state && /\.rate(\.\d+)?$/.test(name)) add(unit === 'rad/s' ? 'Rates of hinges' : unit === 'm/s' ? 'Speeds of hinges' : 'Rates of modal coordinates', name, unit && unit !== '1' ? unit : '1/s', data);
     else if (unit === 'rad' && told.has(name)) continue;
-    else if (unit === 'rad' && turns.has(name)) add('Turns', name, 'turns', run.time, () => column.data.map(v => v / 2 / Math.PI));
-    else if (unit === 'rad') add('Angles', name, 'deg', run.time, () => column.data.map(v => v * degrees));
-    else if (state && unit === '') add('Modal coordinates', name, '1', run.time, data);
+    else if (unit === 'rad' && turns.has(name)) add('Turns', name, 'turns', of_rows(run, column, v => v / 2 / Math.PI));
+    else if (unit === 'rad') add('Angles', name, 'deg', of_rows(run, column, v => v * degrees));
+    else if (state && unit === '') add('Modal coordinates', name, '1', data);
     // Of outputs: a strain, a formula.
-    else if (unit === '1' || unit === '') add('Numbers without a unit', name, '1', run.time, data);
-    else if (name.includes('.')) add(`${name.slice(0, -last.length - 1)}, ${unit}`, name, unit, run.time, data);
-    else add(state && unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, run.time, data);
+    else if (unit === '1' || unit === '') add('Numbers without a unit', name, '1', data);
+    else if (name.includes('.')) add(`${name.slice(0, -last.length - 1)}, ${unit}`, name, unit, data);
+    else add(state && unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, data);
   }
-  const energy = together(run, ['kinetic_energy', 'potential_energy', 'work']);
-  if (energy) {
-    add('Drift of energy: kinetic + potential − work, less its first value', 'drift', 'J', energy.t, () => {
-      const [T, V, W] = energy.values();
-      return T.map((v, i) => v + V[i] - W[i] - (T[0] + V[0] - W[0]));
-    });
+  const drift = computed(run, 'drift', ['kinetic_energy', 'potential_energy', 'work'], ([T, V, W]) => T.map((v, i) => v + V[i] - W[i] - (T[0] + V[0] - W[0])));
+  if (drift) add('Drift of energy: kinetic + potential − work, less its first value', 'drift', 'J', drift);
+  for (const series of run.validity) {
+    const over_limit = v => v / series.limit, few = series.of !== 'rows';
+    const from = few ? of_moments(run, () => series.data.map(over_limit)) : of_rows(run, series, over_limit);
+    add('Validity: each over its limit, which is 1', series.name, '1', { ...from, few: few && run.table.rows > run.animation.times.length }, { limit: 1 });
   }
-  for (const series of run.validity)
-    add('Validity: each over its limit, which is 1', series.name, '1', run.animation.times, () => series.data.map(v => v / series.limit), { limit: 1 });
   return out;
 }
 
-// Groups over all runs: [{title, unit, series: [{name, of: [{run, t, y}]}]}].
+// Groups over all runs: [{title, unit, series: [{name, of: [{run, t, y, spans, whole}], flat, greatest}]}].
 const first = ['Angles', 'Turns', 'Travel of hinges', 'Attitude', 'Deflection of tips', 'Validity', 'Energies', 'Drift'];
 const last = ['Position of tips', 'Modal coordinates', 'Rates of modal', 'Rates of hinges', 'Speeds of hinges', 'Linear momentum', 'Angular momentum'];
 const rank = title => {
@@ -174,29 +190,19 @@ export function grouped(runs) {
       groups.set(q.group, group);
       const series = group.series.get(q.name) ?? { name: q.name, of: [] };
       group.series.set(q.name, series);
-      series.of.push(lazy({ run, t: q.t }, 'y', () => q.y));
+      series.of.push(lazy(lazy({ run, t: q.t, spans: q.spans }, 'y', () => q.y), 'whole', () => q.whole));
     }
   }
   const all = [...groups.values()];
   for (const group of all) {
     group.series = [...group.series.values()];
-    for (const s of group.series) lazy(s, 'flat', () => s.of.every(({ y }) => y.every(v => v === y[0])));
+    for (const s of group.series) {
+      // Runs that each have a number of their own differ.
+      lazy(s, 'flat', () => s.of.every(({ y }) => y.every(v => v === s.of[0].y[0])));
+      lazy(s, 'greatest', () => s.of.reduce((most, { y }) => y.reduce((m, v) => v > m ? v : m, most), -Infinity));
+    }
   }
   return all.sort((a, b) => rank(a.title) - rank(b.title));
-}
-
-// y of a run at the times of another, between its own linearly; nothing outside.
-export function resampled(t, y, at) {
-  const out = new Array(at.length);
-  let i = 0;
-  for (let k = 0; k < at.length; ++k) {
-    while (i + 1 < t.length && t[i + 1] < at[k]) ++i;
-    if (t.length === 0 || at[k] < t[0] || at[k] > t[t.length - 1]) out[k] = null;
-    else if (t[i] === at[k] || i + 1 >= t.length) out[k] = y[i];
-    else if (t[i + 1] === at[k]) out[k] = y[i + 1];
-    else out[k] = y[i] + (y[i + 1] - y[i]) * (at[k] - t[i]) / (t[i + 1] - t[i]);
-  }
-  return out;
 }
 
 // Numbers as a plot takes them, or the logarithms' magnitudes: null where there is none, which leaves a gap.

@@ -13,6 +13,7 @@ import { certificate_rows } from '../src/words.js';
 import { in_browser, opened, text } from './browser.mjs';
 import { check_gltf } from './gltf.mjs';
 import { check_landmarks } from './landmarks.mjs';
+import { check_long_runs, check_rows } from './rows.mjs';
 
 const [withy, scenes, chromium] = process.argv.slice(2);
 let folder, run;
@@ -339,6 +340,7 @@ check_gaps();
 check_certificate();
 check_turns();
 check_common_scale();
+check_rows();
 await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   [folder, run] = [own_folder, own_run];
   simulate('two-link-slew.yaml', 'arm');
@@ -368,6 +370,7 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   await check_controls(browser, troubles);
   await check_columns(browser, troubles);
   await check_several(browser, troubles);
+  await check_long_runs(browser, folder, run, troubles);
   await check_sensors(browser, troubles);
   await check_points(browser, troubles);
   for (const name of ['panel', 'mesh', 'looks']) await (await opened(browser, join(folder, name, 'report.html'), 'theme=dark', troubles)).close();

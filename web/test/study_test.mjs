@@ -4,6 +4,8 @@ import assert from 'node:assert/strict';
 import { execSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
+import { scale_of } from '../src/studies/figure.js';
+import { name_within } from '../src/studies/sweep.js';
 import { in_browser, opened, says, text } from './browser.mjs';
 import { check_words } from './landmarks.mjs';
 
@@ -12,6 +14,23 @@ const page_data = file => JSON.parse(/<script type="application\/json" id="withy
 // Words of a page stand apart; of a test with a folder for pictures the page is left there.
 const shot = async (page, name) => { await check_words(page); if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true }); };
 const close = (a, b) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b)), `${a} and ${b}`);
+
+// An axis in decades has numbers wherever its values lie.
+function check_log_ticks() {
+  const told = (...values) => scale_of(values, { log: true, from: 0, to: 600 }).ticks.map(([, name]) => name);
+  assert.deepEqual(told(3.34, 3.75), ['3.4', '3.5', '3.6', '3.7']);
+  assert.deepEqual(told(2.1, 4.8), ['2.5', '3.0', '3.5', '4.0', '4.5', '5.0']);
+  assert.deepEqual(told(1, 50), ['1', '2', '5', '10', '20', '50']);
+  assert.deepEqual(told(1, 1e4), ['1', '10', '100', '1000', '10000']);
+}
+
+// Of a name that is too long the end stands, and its value whole.
+function check_names() {
+  assert.equal(name_within('bodies.cart.mass', ' = 0.8966', 42), 'bodies.cart.mass = 0.8966');
+  const cut = name_within('initial.hinges.the_slider_of_the_arm.position.0', ' = -0.3654', 42);
+  assert.equal(cut, '…he_slider_of_the_arm.position.0 = -0.3654');
+  assert.equal(cut.length, 42);
+}
 
 // Each model is a mark where its numbers say; a click tells all of it, with the command that runs it.
 async function check_trade(browser, folder, run, troubles) {
@@ -217,6 +236,31 @@ async function check_indices(browser, folder, run, troubles) {
   await page.close();
 }
 
+// Bars of one value at a time: values in a few digits, and what is negative is told beside its bar, with its sign.
+async function check_one_at_a_time(browser, folder, run, troubles) {
+  const out = join(folder, 'oat');
+  const plan = write_plan(folder, 'oat.yaml', 'design: one-at-a-time\nvary:\n  bodies.link1.mass_per_length: {normal: {mean: 1.33937, deviation: 0.05}}\n  loads.slew.time_scale: {uniform: {from: 0.4, to: 1.3}}\n');
+  run('sweep', 'run', plan, '--out', out);
+  const [head, ...rows] = readFileSync(join(out, 'indices.csv'), 'utf8').trim().split('\n').map(l => l.split(','));
+  const of = name => head.indexOf(name), own = rows.filter(r => r[of('result')] === 'final.shoulder[rad]');
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+  const bars = await page.locator('section:first-of-type figure').first().evaluate(figure => {
+    const all = [...figure.querySelectorAll('svg > text')], rects = [...figure.querySelectorAll('svg > rect')].map(r => r.getBBox());
+    const names = all.filter(t => t.classList.contains('name')).map(t => t.textContent);
+    return all.filter(t => t.classList.contains('soft')).map((t, i) => ({ name: names[i], value: t.textContent, left: t.getBBox().x, right: t.getBBox().x + t.getBBox().width, bar: [rects[i].x, rects[i].x + rects[i].width] }));
+  });
+  assert.equal(bars.length, own.length);
+  assert.ok(bars.some(b => b.value.startsWith('-')) && bars.some(b => !b.value.startsWith('-')), 'some fall and some rise');
+  for (const b of bars) {
+    assert.match(b.name, /^[\w.]+ = -?\d*\.?\d{1,5}$/);
+    const told = own.find(r => b.name.startsWith(`${r[of('parameter')]} = `) && Math.abs(b.name.split(' = ')[1] / r[of('value')] - 1) < 1e-3);
+    assert.ok(Math.abs(b.value / told[of('difference')] - 1) < 5e-3, `${b.name}: ${b.value}`);
+    assert.ok(b.value.startsWith('-') ? b.right <= b.bar[0] : b.left >= b.bar[1], `${b.name}: ${b.value} lies on its bar`);
+  }
+  await shot(page, 'oat-light');
+  await page.close();
+}
+
 // Words and curves of the files: each point told by the pointer, curves taken away by their names.
 async function check_figures(browser, folder, run, troubles) {
   const measured = join(scenes, 'measured/pendulum.csv');
@@ -265,9 +309,11 @@ async function check_inverse(browser, folder, run, troubles) {
   await page.close();
 }
 
+check_log_ticks();
+check_names();
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
-  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_figures]) await check(browser, folder, run, troubles);
+  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_one_at_a_time, check_figures]) await check(browser, folder, run, troubles);
   assert.deepEqual(troubles, []);
   console.log('the pages of studies show what their files say');
 });

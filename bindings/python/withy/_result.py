@@ -36,6 +36,20 @@ def places_of(names: list[str]) -> tuple[dict[str, int], dict[str, int]]:
             {name.replace("[", ".").replace("]", ""): i for i, name in enumerate(names) if "[" in name})
 
 
+class _Units(dict[str, str]):
+    """SI units by the names of columns, and by those that results.csv calls them."""
+
+    def __init__(self, names: list[str], units: list[str]) -> None:
+        super().__init__(zip(names, units))
+
+    def __missing__(self, name: str) -> str:
+        names = list(self)
+        place = places_of(names)[1].get(name)
+        if place is None:
+            raise unknown("column", name, names)
+        return self[names[place]]
+
+
 class Result(Mapping[str, "NDArray[numpy.float64]"]):
     """The table of a run by the names of its columns, those of results.csv: ``result["shoulder"]``.
 
@@ -43,7 +57,7 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
         status: ``completed``, ``inaccurate``, ``diverged``, ``singular``, ``step-underflow``, ``interrupted``,
             ``load-failed`` or ``too-stiff``.
         message: the physical reason of a bad end, or what a completed run should not keep to itself; else empty.
-        units: SI unit of each column by its name; empty for modal coordinates.
+        units: SI unit of each column by its name, as the table has it or results.csv; empty for modal coordinates.
         table: all numbers [rows, columns], in SI units.
         summary: the content of run.json: peaks, events, steps, certificate.
         cause: where the status is ``load-failed``, the exception that a load written in Python raised; else None.
@@ -53,7 +67,7 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
                  text: str, cause: BaseException | None = None) -> None:
         self.status = status
         self.message = message
-        self.units = dict(zip(names, units))
+        self.units: dict[str, str] = _Units(names, units)
         self.table = table
         self.cause = cause
         self.summary: dict[str, Any] = json.loads(text)

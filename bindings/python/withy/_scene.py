@@ -120,6 +120,7 @@ class Scene:
     def __init__(self, *, plugins: Sequence[Path] = (), **values: Any) -> None:
         self._plugins: tuple[str, ...] = tuple(os.fspath(p) for p in as_list(plugins))
         self._name = "scene"
+        self._folder = ""  # where names of files begin: of what was read, or the working folder when it was needed first
         self._read: _withy.Scene | None = None
         # While it is built in code: what it says. Else the engine's scene knows.
         self._values: dict[str, Any] | None = {"format": "withy/1", **{k: plain(v) for k, v in values.items()}}
@@ -127,14 +128,15 @@ class Scene:
     @classmethod
     def _of(cls, made: _withy.Scene, plugins: Sequence[str]) -> Scene:
         scene = cls(plugins=plugins)
-        scene._name, scene._read, scene._values = made.name, made, None
+        scene._name, scene._folder, scene._read, scene._values = made.name, made.folder, made, None
         return scene
 
     @property
     def _made(self) -> _withy.Scene:
         """The engine's scene, anew after a change in code."""
         if self._read is None:
-            self._read = _withy.Scene.parse(library(self._plugins), self.to_yaml(), self._name)
+            self._read = _parsed(self.to_yaml(), self._name, self._plugins, self._folder)
+            self._folder = self._read.folder
         return self._read
 
     def _values_now(self) -> dict[str, Any]:
@@ -229,7 +231,7 @@ class Scene:
         if path not in paths:
             raise unknown("set value", path, paths)
         kept = [change for change, of in zip(self._made.changes, paths) if of != path]
-        self._read = _restored(self._made.text, self._made.name, self._plugins, kept)._made
+        self._read = _restored(self._made.text, self._made.name, self._plugins, kept, self._made.folder)._made
         self._values = None
         return self
 
@@ -243,7 +245,7 @@ class Scene:
         return self.copy()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self._made.text, self._made.name, self._plugins, list(self._made.changes))
+        return _restored, (self._made.text, self._made.name, self._plugins, list(self._made.changes), self._made.folder)
 
     def __repr__(self) -> str:
         changes = "".join(f", {change}" for change in self._made.changes)
@@ -352,12 +354,15 @@ class Scene:
             lock: hinges that are held.
 
         Raises:
-            SimulationStopped: where the mass matrix of what is free is singular.
+            SimulationStopped: where the mass matrix of what is free is singular, or something is not finite; from what
+                a load in Python raised.
             SceneError: where the scene, or what is asked of it, cannot be.
         """
         linear = _read_json(self._made.linearize(as_list(inputs), as_list(outputs), as_list(lock)))
-        for name, columns in (("A", "states"), ("B", "inputs"), ("C", "states"), ("D", "inputs")):
-            linear[name] = numpy.array(linear[name], float).reshape(-1, len(linear[columns]))
+        for name, rows, columns in (("A", "states", "states"), ("B", "states", "inputs"), ("C", "outputs", "states"),
+                                    ("D", "outputs", "inputs")):
+            # Of a matrix without elements, as B where nothing drives the scene, text has no shape.
+            linear[name] = numpy.array(linear[name], float).reshape(len(linear[rows]), len(linear[columns]))
         return linear
 
     def _with(self, options: Mapping[str, Any]) -> Scene:
@@ -379,8 +384,15 @@ def _set_members(scene: Scene, path: str, value: Any) -> None:
         scene.set(path, value)
 
 
-def _restored(text: str, name: str, plugins: tuple[str, ...], changes: list[str]) -> Scene:
-    scene = loads(text, name, plugins, check=False)  # what is wrong in the text may be mended by the changes
+def _parsed(text: str, name: str, plugins: Sequence[str], folder: str) -> _withy.Scene:
+    """Names of other files begin at the folder or, where it is empty, at that of the name as it is now."""
+    if folder:
+        return _withy.Scene.parse(library(plugins), text, name, folder)
+    return _withy.Scene.parse(library(plugins), text, name)
+
+
+def _restored(text: str, name: str, plugins: tuple[str, ...], changes: list[str], folder: str = "") -> Scene:
+    scene = Scene._of(_parsed(text, name, plugins, folder), plugins)
     for change in changes:
         path, _, value = change.partition("=")
         scene.set(path, value)

@@ -34,7 +34,8 @@ export function scale_of(values, { log = false, from, to, include = [], room = 0
   low -= include.length && Math.min(...include.map(tell)) <= low ? 0 : more;
   high += more;
   const at = v => from + (tell(v) - low) / (high - low) * (to - from);
-  at.ticks = log ? log_ticks(low, high) : ticks(low, high, Math.abs(to - from) / (Math.abs(to - from) > 300 ? 80 : 50));
+  const most = Math.abs(to - from) / (Math.abs(to - from) > 300 ? 80 : 50);
+  at.ticks = log ? log_ticks(low, high, most) : ticks(low, high, most);
   at.low = low;
   at.high = high;
   return at;
@@ -45,13 +46,16 @@ function ticks(low, high, most) {
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) out.push(k * step);
   return out.map(v => [v, label_of(v, out, false).replace('e+', 'e')]);
 }
-function log_ticks(low, high) {
+// Powers of ten, and where these are few twice and five times them; where even those are less than three, round numbers.
+const few_decades = 2.2;
+function log_ticks(low, high, most) {
   const out = [], thin = Math.max(1, Math.round((high - low) / 8));
   for (let k = Math.floor(low); k <= high; ++k) {
     const name = k >= -3 && k <= 4 ? `${+(10 ** k).toPrecision(1)}` : `1e${k}`;
     if (k >= low && k % thin === 0) out.push([10 ** k, name]);
-    if (high - low < 2.2) for (const m of [2, 5]) if (k + Math.log10(m) >= low && k + Math.log10(m) <= high) out.push([m * 10 ** k, k >= -3 && k <= 4 ? `${+(m * 10 ** k).toPrecision(1)}` : `${m}e${k}`]);
+    if (high - low < few_decades) for (const m of [2, 5]) if (k + Math.log10(m) >= low && k + Math.log10(m) <= high) out.push([m * 10 ** k, k >= -3 && k <= 4 ? `${+(m * 10 ** k).toPrecision(1)}` : `${m}e${k}`]);
   }
+  if (out.length < 3 && high - low < few_decades) return ticks(10 ** low, 10 ** high, most);
   return out;
 }
 

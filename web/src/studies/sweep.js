@@ -2,6 +2,7 @@
 import { element } from '../words.js';
 import { Figure, answers, draw, number, number_within, scale_of, table_of, tell } from './figure.js';
 
+const most_told = 6;  // results, in words
 const short = name => name.replace(/^peak\.|^final\./, '');
 
 export class Sweep {
@@ -25,10 +26,14 @@ export class Sweep {
     said.append(element('p', `${cases} cases: ${done} done, ${failed} of them failed${cases > done ? `, ${cases - done} missing` : ''}.`));
     if (failed > 0) said.append(element('p', `${number(100 * failed_share.value)} % failed; with 95 % confidence ${number(100 * failed_share.low)} to ${number(100 * failed_share.high)} %, were they drawn at random.`, { class: 'message' }));
     if (this.data.counted_every > 1) said.append(element('p', `Distributions and envelopes are of every ${this.data.counted_every}th case; table.csv has all.`));
-    for (const c of this.results.slice(0, 6)) {
+    for (const c of this.results.slice(0, most_told)) {
       const told = number_within(c.least, c.greatest);
       said.append(element('p', `${c.name}: half of the cases are below ${told(c.median)}, 5 % below ${told(c.p05)}, 5 % above ${told(c.p95)}; least ${told(c.least)}, greatest ${told(c.greatest)}.`, { class: 'soft' }));
     }
+    const note = text => said.append(element('p', text, { class: 'soft' }));
+    if (this.results.length > most_told) note(`${this.results.length - most_told} results more are below.`);
+    const not_drawn = this.data.columns.filter(c => c.role !== 'result' && !c.numeric).map(c => c.name);
+    if (not_drawn.length) note(`In no figure, for no numbers or one value in all cases: ${not_drawn.join(', ')}.`);
     this.holder.append(said);
   }
 
@@ -80,7 +85,7 @@ export class Sweep {
   over_time() {
     const names = [...new Set(this.data.histories.map(h => h.name))];
     this.section('Over time', (colours, chosen) => [
-      element('p', 'Line: median; bands: from 25 to 75, from 5 to 95 % of the cases, and from the least to the greatest.', { class: 'soft wide' }),
+      element('p', `Line: median; bands: from 25 to 75, from 5 to 95 % of the cases, and from the least to the greatest.${of_all(this.data.histories.length, this.data.histories_in_all, 'histories.csv has all')}`, { class: 'soft wide' }),
       ...this.data.histories.filter(h => h.name === chosen.name).flatMap(h => this.of_history(h, colours)),
     ], names.length > 1, names.map(name => ({ name })));
   }
@@ -131,14 +136,17 @@ export class Sweep {
       for (const l of levels) figure.mark(l.at, l.median, 0, { fill: colours[0], small: true }, () => [`${axis.name} about ${number(l.at)}`, `median ${number(l.median)}, 5 % ${number(l.p05)}, 95 % ${number(l.p95)}`, `least ${number(l.least)}, greatest ${number(l.greatest)}, ${l.count} cases`]);
       return figure.element;
     }).filter(Boolean);
-    return made.length ? [element('p', 'Line: median; dark: from 5 to 95 % of the cases; light: from the least to the greatest.', { class: 'soft wide' }), ...made] : [];
+    const drawn = Object.values(this.data.envelopes).reduce((n, of_axis) => n + Object.keys(of_axis).length, 0);
+    const which = of_all(drawn, this.data.envelopes_in_all, 'the others are in table.csv');
+    return made.length || which ? [element('p', `Line: median; dark: from 5 to 95 % of the cases; light: from the least to the greatest.${which}`, { class: 'soft wide' }), ...made] : [];
   }
 
   indices(colours, result) {
     const { head, rows } = this.data.indices, at = name => head.indexOf(name);
     const own = rows.filter(r => r[at('result')] === result?.name);
     if (!own.length) return [];
-    const bars = (title, of, color) => this.bars(title, own.map(r => ({ name: r[at('parameter')] + (at('value') >= 0 ? ` = ${r[at('value')]}` : ''), ...of(r) })), color);
+    const value = at('value') >= 0 ? told_values(own, at('parameter'), at('value')) : () => '';
+    const bars = (title, of, color) => this.bars(title, own.map(r => ({ name: r[at('parameter')], value_told: value(r), ...of(r) })), color);
     const estimate = name => r => ({ value: +r[at(name)], low: +r[at(`${name}.low`)], high: +r[at(`${name}.high`)] });
     if (at('total') >= 0) return [bars('Sobol index, alone: share of the variance', estimate('first'), colours[0]), bars('Sobol index, total: with all others', estimate('total'), colours[1])];
     if (at('mu_star') >= 0) return [bars('Morris: mean size of the elementary effects', estimate('mu_star'), colours[0]), bars('Morris: their deviation (interaction, curvature)', r => ({ value: +r[at('sigma')] }), colours[1])];
@@ -147,20 +155,26 @@ export class Sweep {
 
   // Horizontal bars with intervals, the greatest first.
   bars(title, entries, color) {
-    entries = entries.filter(e => Number.isFinite(e.value)).sort((a, b) => Math.abs(b.value) - Math.abs(a.value)).slice(0, 30);
-    const figure = element('figure', null, { class: 'study-figure' }), width = 560, line = 26, left = 210, height = entries.length * line + 30;
+    const all = entries.filter(e => Number.isFinite(e.value)).sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
+    entries = all.slice(0, 30);
+    if (all.length > entries.length) title += `: the first ${entries.length} of ${all.length}, indices.csv has all`;
+    const figure = element('figure', null, { class: 'study-figure' }), width = 560, line = 26, height = entries.length * line + 30;
+    const names = entries.map(e => name_within(e.name, e.value_told ?? '', 42)), left = Math.min(310, Math.max(120, 20 + 7 * Math.max(0, ...names.map(n => n.length))));
+    const beside = 60; // room of a number at the end of its bar
     const svg = draw('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': title });
-    const x = scale_of(entries.flatMap(e => [e.value, e.low ?? e.value, e.high ?? e.value]), { from: left, to: width - 60, include: [0] });
+    const x = scale_of(entries.flatMap(e => [e.value, e.low ?? e.value, e.high ?? e.value]), { from: left + (entries.some(e => e.value < 0) ? beside : 0), to: width - beside, include: [0] });
     const axes = draw('g', { class: 'axes' });
     for (const [v, name] of x.ticks) axes.append(draw('line', { x1: x(v), x2: x(v), y1: 0, y2: height - 24 }), draw('text', { x: x(v), y: height - 8, 'text-anchor': 'middle' }, name));
     svg.append(axes);
     entries.forEach((e, i) => {
       const y = i * line + 5, from = Math.min(x(0), x(e.value));
       const bar = draw('rect', { x: from, y, width: Math.max(1, Math.abs(x(e.value) - x(0))), height: 16, fill: color });
-      answers(bar, () => [e.name, `${number(e.value)}${e.low != null ? `, with 95 % confidence ${number(e.low)} to ${number(e.high)}` : ''}`]);
+      answers(bar, () => [e.name + (e.value_told ?? ''), `${number(e.value)}${e.low != null ? `, with 95 % confidence ${number(e.low)} to ${number(e.high)}` : ''}`]);
       svg.append(bar);
       if (e.low != null) svg.append(draw('path', { d: `M${x(e.low)} ${y + 8}H${x(e.high)}M${x(e.low)} ${y + 4}v8M${x(e.high)} ${y + 4}v8`, stroke: 'currentColor', 'stroke-width': 1.4 }));
-      svg.append(draw('text', { x: left - 8, y: y + 12, 'text-anchor': 'end', class: 'name' }, e.name.length > 30 ? `…${e.name.slice(-29)}` : e.name), draw('text', { x: Math.max(x(e.value), x(e.high ?? e.value)) + 6, y: y + 12, class: 'soft' }, number(e.value)));
+      svg.append(draw('text', { x: left - 8, y: y + 12, 'text-anchor': 'end', class: 'name' }, names[i]));
+      const end = e.value < 0 ? { x: Math.min(x(e.value), x(e.low ?? e.value)) - 6, 'text-anchor': 'end' } : { x: Math.max(x(e.value), x(e.high ?? e.value)) + 6 };
+      svg.append(draw('text', { ...end, y: y + 12, class: 'soft' }, number(e.value)));
     });
     figure.append(element('figcaption', title), svg);
     return figure;
@@ -268,6 +282,23 @@ export class Sweep {
     frame.append(table_of([['case', r => r.case], ['status', r => r.status], ['why', r => r.message], ['to run it alone', r => r.command]], this.data.failures));
     return frame;
   }
+}
+
+// What stands behind figures of which some only are on the page.
+const of_all = (shown, all, where) => all > shown ? ` The first ${shown} of ${all}; ${where}.` : '';
+
+// " = 0.8966" behind the name of a parameter, with the digits that tell its values apart; what is no number as it is.
+function told_values(rows, parameter, value) {
+  const of = new Map();
+  for (const r of rows) if (r[value] !== '' && Number.isFinite(+r[value])) of.set(r[parameter], [...of.get(r[parameter]) ?? [], +r[value]]);
+  const told = new Map([...of].map(([name, values]) => [name, number_within(Math.min(...values), Math.max(...values))]));
+  return r => ` = ${r[value] !== '' && Number.isFinite(+r[value]) ? told.get(r[parameter])(+r[value]) : r[value]}`;
+}
+
+// Of a name that is too long the end, and what stands behind it whole.
+export function name_within(name, behind, most) {
+  const room = Math.max(8, most - behind.length);
+  return (name.length > room ? `…${name.slice(1 - room)}` : name) + behind;
 }
 
 function fitted(name, width) {

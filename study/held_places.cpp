@@ -1,0 +1,101 @@
+#include "withy/study/held_places.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "withy/core/shape/held_section.hpp"
+#include "withy/core/shape/vibrations.hpp"
+#include "withy/core/simulation/motion_stiffness.hpp"
+#include "withy/study/mode_basis.hpp"
+
+namespace withy::study {
+namespace {
+
+/// Of a frequency: less is hardly worth a word.
+constexpr double notably_faster_held = 0.015;
+/// Functions that bend freely at either end: they have the moment at a clamp wherever it is.
+constexpr const char* free_at_the_tip = "orthogonal-polynomials";
+constexpr std::size_t most_held_functions = 100;  ///< that polynomials have
+
+/// Whether all turns that modes give a section are held: it is clamped.
+bool is_clamped(const HeldSection& at) { return (at.held * at.at.psi - at.at.psi).isZero(1e-9 * at.at.psi.norm()); }
+
+/// First frequency [Hz] of some of a body's modes, a section of it clamped; not a number where they have no mass then.
+double first_hertz(const Body& body, const HeldSection& at, Eigen::Index from, Eigen::Index count) {
+  const Eigen::MatrixXd K = body.shape().stiffness.block(from, from, count, count),
+                        G = modal_mass(body.shape(), at).block(from, from, count, count);
+  if (Eigen::LLT<Eigen::MatrixXd>(G).info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
+  return std::sqrt(vibrations(K, G).squares[0]) / (2 * std::numbers::pi);
+}
+
+/// "2 bending_y modes of clamped-free vibrate first at 9.342 Hz, as many of orthogonal-polynomials at 5.623 Hz", strain
+/// by strain; empty where the body's functions do about as well.
+std::string of_held_strains(const Scene& scene, const BodyModes& modes, const Body& body, const HeldSection& at,
+                            Registry& registry) {
+  std::string text;
+  Eigen::Index from = 0;
+  for (const ModeCount& count : modes.counts) {
+    const auto n = static_cast<Eigen::Index>(count.modes), first = std::exchange(from, from + n);
+    if (n == 0 || count.modes > most_held_functions || count.family_path.empty() ||
+        count.family_id() == free_at_the_tip)
+      continue;
+    const auto other =
+        body_with(scene, modes.body, {{count.family_path, Value(std::string(free_at_the_tip))}}, registry);
+    if (other == nullptr || other->shape().modes() != body.shape().modes()) continue;
+    const std::optional<PointExpansion> section = other->station(at.at.X.x());
+    if (!section) continue;
+    const double has = first_hertz(body, at, first, n), could = first_hertz(*other, {*section, at.held}, first, n);
+    if (!(has > (1 + notably_faster_held) * could)) continue;
+    text += fmt::format("{}{} {} modes of {} vibrate first at {:.4g} Hz, as many of {} at {:.4g} Hz",
+                        text.empty() ? "" : "; ", n, count.strain, count.family_id(), has, free_at_the_tip, could);
+  }
+  return text;
+}
+
+/// A beam's sections are one with its root, but functions that are made for a clamped root and a free tip have no
+/// moment where it is held instead.
+std::string of_beam(const Prepared& prepared, std::size_t b, Registry& registry) {
+  const Model& model = prepared.model();
+  const BodyNode& node = model.bodies()[b];
+  const std::optional<HeldSection> at = held_root(model, b);
+  if (node.segment || !at || !is_clamped(*at)) return {};
+  for (const BodyModes& modes : prepared.scene.modes)
+    if (modes.body == node.name) return of_held_strains(prepared.scene, modes, *node.body, *at, registry);
+  return {};
+}
+
+}  // namespace
+
+void look_at_held_places(const Prepared& prepared, Registry& registry, std::vector<Remark>& all) {
+  const Model& model = prepared.model();
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const HingeNode& hinge = model.hinges()[h];
+    const auto b = static_cast<std::size_t>(hinge.child);
+    const BodyNode& node = model.bodies()[b];
+    if (node.body->shape().modes() == 0) continue;
+    const Frame& held = node.frames[static_cast<std::size_t>(hinge.child_frame)];
+    const PointExpansion root = *node.body->station(std::string("root"));
+    if (held.section.X == root.X || (held.section.phi.isZero(0) && held.section.psi.isZero(0))) continue;
+    const std::string begin = fmt::format("holds '{}' at '{}', where its modes move", node.name, held.name);
+    if (!node.body->cut(0)) {
+      all.push_back({place_in_scene(prepared.scene, "hinges", hinge.name),
+                     begin + "; they are those of the body held at its root and leave all that is clamped there "
+                             "undeformed: hold it at its root"});
+      continue;
+    }
+    const std::string strains = of_beam(prepared, b, registry);
+    if (strains.empty()) continue;
+    all.push_back({place_in_scene(prepared.scene, "hinges", hinge.name),
+                   begin + ", and they bend badly when it is clamped there: " + strains +
+                       "; choose these, or hold it at its root"});
+  }
+}
+
+}  // namespace withy::study

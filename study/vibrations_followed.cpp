@@ -1,0 +1,106 @@
+#include "withy/study/vibrations_followed.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "withy/core/model/closing.hpp"
+#include "withy/core/shape/vibrations.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/elastic_modes.hpp"
+
+namespace withy::study {
+namespace {
+
+/// Six steps a period and more are to follow a vibration.
+constexpr double most_radians_a_step = 1;
+/// Of the kinetic energy of vibration: a vibration that has less moves little beside the others.
+constexpr double share_that_counts = 0.1;
+/// Of the energy that moves in the run: with less of it, speeds of vibration are below a thousandth of the others.
+constexpr double energy_that_counts = 1e-6;
+
+/// What vibrates at a state.
+struct Vibrating {
+  double frequency = 0;    ///< [rad/s]
+  double energy = 0;       ///< kinetic [J]
+  Eigen::Index speed = 0;  ///< that has most of it
+};
+
+/// At a state: η̇ = vᵀ M u of each vibration v with vᵀ M v = 1. What hinges do that nothing bends is orthogonal to all
+/// of them, and speeds that motions prescribe take no part.
+void add_vibrating(const EquationsOfMotion& equations, const Eigen::MatrixXd& stiffness, const State& state,
+                   std::vector<Vibrating>& all) {
+  const DenseSystem system = equations.system(state.time, state.y);
+  const auto n = static_cast<Eigen::Index>(system.size);
+  std::vector<bool> prescribed(system.size);
+  for (const PrescribedRate& p : system.prescribed) prescribed[p.speed] = true;
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (!prescribed[static_cast<std::size_t>(i)]) free.push_back(i);
+  if (free.empty()) return;
+  // Strict formulations have no symmetric mass matrix.
+  const Eigen::MatrixXd whole = Eigen::Map<const Eigen::MatrixXd>(system.mass.data(), n, n)(free, free),
+                        mass = 0.5 * (whole + whole.transpose());
+  const Vibrations found = vibrations(stiffness(free, free), mass);
+  const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(state.y.data() + equations.layout().positions, n)(free);
+  const Eigen::VectorXd rates = found.vectors.transpose() * (mass * u);
+  for (Eigen::Index k = found.rigid(); k < found.squares.size(); ++k) {
+    Vibrating v{std::sqrt(found.squares[k]), 0.5 * rates[k] * rates[k], 0};
+    const Eigen::VectorXd shares = found.vectors.col(k).cwiseAbs2().cwiseProduct(mass.diagonal());
+    shares.maxCoeff(&v.speed);
+    v.speed = free[static_cast<std::size_t>(v.speed)];
+    all.push_back(v);
+  }
+}
+
+/// Over states along a run: phases as they come. \param states how many were looked at
+std::vector<Vibrating> vibrating_along(const Model& model, const EquationsOfMotion& equations,
+                                       const std::vector<State>& along, double& states) {
+  constexpr std::size_t looks = 16;
+  const Eigen::MatrixXd stiffness = stiffness_of_modes(model);
+  std::vector<Vibrating> all;
+  states = 0;
+  const std::size_t every = std::max<std::size_t>(along.size() / looks, 1);
+  for (std::size_t i = 0; i < along.size(); i += every) {
+    try {
+      add_vibrating(equations, stiffness, along[i], all);
+      ++states;
+    } catch (const std::domain_error&) {  // the mass matrix is not positive definite there
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::optional<Indicator> vibrations_followed(const Scene& scene, const EquationsOfMotion& equations,
+                                             const RunSummary& summary) {
+  const Model& model = *scene.model;
+  if (scene.source.at("integrator").find("rtol") != nullptr || summary.steps.accepted == 0 ||
+      model.layout().speeds > largest_examined || !loops_of(model).empty())
+    return {};
+  double whole = 0, states = 0;
+  std::vector<Vibrating> all = vibrating_along(model, equations, summary.validity.along, states);
+  for (const Vibrating& v : all) whole += v.energy;
+  if (!(whole > energy_that_counts * summary.energy_scale * states)) return {};
+  std::sort(all.begin(), all.end(), [](const Vibrating& a, const Vibrating& b) { return a.frequency > b.frequency; });
+  double above = 0;
+  const auto counts = std::find_if(all.begin(), all.end(), [&](const Vibrating& v) {
+    above += v.energy;
+    return above >= share_that_counts * whole;
+  });
+  const double step = (summary.reached - scene.initial.time) / static_cast<double>(summary.steps.accepted);
+  return Indicator{
+      fmt::format("step times the frequency of what vibrates, {:.3g} rad/s, most of it {}", counts->frequency,
+                  model.layout().speed_names[static_cast<std::size_t>(counts->speed)]),
+      step * counts->frequency, most_radians_a_step,
+      "steps do not follow it: the motion is another, whatever the energy says; take shorter ones, or an integrator "
+      "with 'rtol'"};
+}
+
+}  // namespace withy::study
