@@ -185,7 +185,8 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
   if (!good) {
     result.loop = farthest(model, assembler.gaps());
     result.fault = "the loop cannot be closed from the initial state: its frames are " + brief(gap) +
-                   " m apart there (turns count with the length of the largest flexible body, or of what hinges and constraints join), and what `initial` gives and "
+                   " m apart there (turns count with the length of the largest flexible body, or of what hinges and "
+                   "constraints join), and what `initial` gives and "
                    "motions prescribe leaves no way; give fewer coordinates, or a nearer `guess`";
     return result;
   }

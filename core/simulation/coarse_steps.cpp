@@ -1,4 +1,3 @@
-#include "withy/core/plugin/just_before.hpp"
 #include "withy/core/simulation/coarse_steps.hpp"
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include "withy/core/plugin/discrete_states.hpp"
+#include "withy/core/plugin/just_before.hpp"
 
 namespace withy {
 namespace {
@@ -46,8 +46,7 @@ class SemiImplicitStepper final : public Stepper {
     combine(known_ ? h - ahead * h : 0, slope_, ahead * h, first_, stage_);
     combine(0, slope_, (1 - gamma) * h, first_, base_);
     // What jumps at the end belongs to the step after.
-    if (const StepResult r = evaluate(just_before(t_new, t), gamma * h, slope_);
-        r.outcome != StepResult::Outcome::ok)
+    if (const StepResult r = evaluate(just_before(t_new, t), gamma * h, slope_); r.outcome != StepResult::Outcome::ok)
       return r;
     before_ = state_;
     for (std::size_t i = 0; i < base_.size(); ++i) state_.y[i] = base_[i] + gamma * h * slope_[i];
