@@ -1,10 +1,10 @@
-#include "withy/core/plugin/just_before.hpp"
 #include "withy/core/simulation/output_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "withy/core/plugin/just_before.hpp"
 #include "withy/core/simulation/parabola.hpp"
 
 namespace withy {
