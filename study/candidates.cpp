@@ -176,7 +176,8 @@ ReferenceFamilies reference_families(const Candidates& candidates, const Prepare
   std::vector<std::string> others = all;
   if (loaded) {
     const char* const knows = varies ? of_the_beam : loaded_modes;
-    std::erase_if(others, [&](const std::string& family) { return family != knows && family != of_even_ones; });
+    std::erase_if(others,
+                  [&](const std::string& family) { return family != knows && (!varies || family != of_even_ones); });
   }
   // Functions of even beams may come near a beam that varies so evenly that their series seem to lead to the truth.
   return {varies ? of_the_beam : of_even_ones, std::move(others)};

@@ -13,6 +13,7 @@
 #include "withy/study/input_error.hpp"
 #include "withy/study/sampled_loads.hpp"
 #include "withy/study/sampled_steady.hpp"
+#include "withy/study/timed_loads.hpp"
 
 namespace withy::study {
 namespace {
@@ -90,9 +91,10 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
       at.steady->derivatives = derivatives_text(tangents);
     }
     at.turn = turning_modes(c, state, wish);
-    if (as_is) at.turn->timed.clear();  // nobody has said that the state stays
     if (!as_is && (!at.turn->check.steady || !at.turn->uneven.empty() || !at.turn->timed.empty()))
       at.steady->stays = false;
+    // Of a state as it is nobody has said that it stays.
+    if (as_is || (!at.turn->timed.empty() && !small_motions_change(c, state, tangents))) at.turn->timed.clear();
   } catch (const std::domain_error& e) {
     const NotFinite found = not_finite(c, state);
     at.problem = found.text.empty() ? e.what() : found.text;
