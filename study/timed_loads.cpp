@@ -49,13 +49,14 @@ std::vector<std::string> timed_loads(const Configuration& c, const State& state)
 
 bool small_motions_change(const Configuration& c, const State& state, const Tangents& now) {
   constexpr double differenced = 1e-6;  // of the greatest element: derivatives of some loads are differences
-  constexpr std::size_t every = 6;      // of the times, for tangents take longer than efforts
-  const std::vector<double> times = times_after(c, state);
+  // Soon after: far from where a law is by then, a controller is at its limit.
+  constexpr int first = 8, last = 20, every = 3;
+  const double span = times_after(c, state).front() * 2;
   const auto differs = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     return a.size() > 0 && (a - b).cwiseAbs().maxCoeff() > differenced * a.cwiseAbs().maxCoeff();
   };
-  for (std::size_t k = 0; k < times.size(); k += every) {
-    const double t = state.time + times[k];
+  for (int k = first; k <= last; k += every) {
+    const double t = state.time + std::ldexp(span, -k);
     const Tangents then = c.dynamics().tangents(t, state.y, c.dynamics().steady_accelerations(t));
     if (differs(now.by_position, then.by_position) || differs(now.by_speed, then.by_speed) ||
         differs(now.by_state, then.by_state) || differs(now.rate_by_position, then.rate_by_position) ||
