@@ -61,7 +61,10 @@ void add_vibrating(const EquationsOfMotion& equations, const Eigen::MatrixXd& st
 /// Over states along a run: phases as they come. \param states how many were looked at
 std::vector<Vibrating> vibrating_along(const Model& model, const EquationsOfMotion& equations,
                                        const std::vector<State>& along, double& states) {
-  constexpr std::size_t looks = 16;
+  // Of many coordinates fewer states, so that this takes milliseconds.
+  constexpr double most = 16, least = 2, elements = 4e6;
+  const auto n = static_cast<double>(model.layout().speeds);
+  const auto looks = static_cast<std::size_t>(std::clamp(elements / (n * n * n), least, most));
   const Eigen::MatrixXd stiffness = stiffness_of_modes(model);
   std::vector<Vibrating> all;
   states = 0;

@@ -13,6 +13,7 @@
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/zero_watch.hpp"
 #include "withy/results/result_columns.hpp"
 
 namespace withy::fmi {

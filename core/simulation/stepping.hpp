@@ -16,6 +16,7 @@
 #include "withy/core/simulation/run_event.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/time_courses.hpp"
+#include "withy/core/simulation/zero_watch.hpp"
 
 namespace withy {
 
