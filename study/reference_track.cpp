@@ -188,6 +188,11 @@ std::size_t ReferenceTracker::too_many(std::size_t windows_done) const {
   return shorter * together() * per_window_ + (windows_done == 0 ? at_first : 0);
 }
 
+/// Where `exact` is offered it would have been taken for more than a fiftieth of the accuracy.
+double ReferenceTracker::lacking(const Bend& bend) const {
+  return std::isinf(small_) ? third_order_over_a_run(bend) : third_order_share(bend);
+}
+
 ReferenceTrack ReferenceTracker::beside_least() {
   ReferenceTrack track = blank();
   if (second_ == 0) return track;
@@ -197,7 +202,7 @@ ReferenceTrack ReferenceTracker::beside_least() {
     const bool good = run(track, small_, true);
     if (!good) track.beside.clear();
     seen_ = std::max(seen_, track.bend.size());
-    track.third_order = third_order_over_a_run(track.bend);
+    track.third_order = lacking(track.bend);
     return good;
   };
   // Where only the correction failed, the reference is made in its own rung.
@@ -209,7 +214,7 @@ ReferenceTrack ReferenceTracker::beside_least() {
 ReferenceTrack ReferenceTracker::highest() {
   ReferenceTrack track = blank();
   if (!(seen_ > small_) && (run(track, small_, false) || !track.problem.empty())) {
-    track.third_order = third_order_over_a_run(track.bend);
+    track.third_order = lacking(track.bend);
     return track;
   }
   track = blank();

@@ -49,6 +49,8 @@ class ReferenceTracker {
   ReferenceTrack highest();
 
  private:
+  /// What terms of third order leave, as a share of ranges.
+  [[nodiscard]] double lacking(const Bend& bend) const;
   ReferenceTrack blank() const;
   bool run(ReferenceTrack& track, double most_bend, bool beside);
   /// Whether the accelerations of another rung can be taken once a step: where loads are stiff (radau was chosen) their
