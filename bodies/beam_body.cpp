@@ -35,7 +35,6 @@ class Beam final : public Body, public TurnedSections, private Rod {
         strains_(std::move(strains)),
         quadrature_(material.length, wave_number(material, strains_), kinks(material, strains_)) {
     shape_.length = length_;
-    for (const auto& [axis, inertia] : material.inertias) bending_inertia_ |= axis != Vector3::UnitX();
     for (const BeamStrain& s : strains_) {
       for (std::size_t i = 1; i <= s.functions->count(); ++i) {
         shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
@@ -155,15 +154,11 @@ class Beam final : public Body, public TurnedSections, private Rod {
     return parts;
   }
   const Rod* rod() const override {
-    // The exact rod is inextensible, without rotary inertia in bending, and clamped at x = 0. Shape functions that
-    // vanish there leave rounding, at most 1e-12 of a mode's size.
+    // The exact rod is clamped at x = 0. Shape functions that vanish there leave rounding, at most 1e-12 of a mode's
+    // size.
     const LinearFields root = linear_fields(strains_, 0);
-    for (const BeamStrain& s : strains_) {
-      if (s.kind == BeamData::Strain::elongation) return nullptr;
-    }
     const double moved = root.phi.cwiseAbs().sum() + length_ * root.psi.cwiseAbs().sum();
-    return !bending_inertia_ && shape_.modes() > 0 && moved < 1e-9 * static_cast<double>(shape_.modes()) ? this
-                                                                                                         : nullptr;
+    return shape_.modes() > 0 && moved < 1e-9 * static_cast<double>(shape_.modes()) ? this : nullptr;
   }
 
  private:
@@ -175,12 +170,20 @@ class Beam final : public Body, public TurnedSections, private Rod {
   double length() const override { return length_; }
   double wave_number() const override { return of_strains(strains_); }
   std::vector<double> kinks() const override { return inside(of_functions(strains_)); }
-  std::vector<double> mass_kinks() const override { return inside(kinks(material_, {})); }
+  std::vector<double> mass_kinks() const override {
+    std::vector<double> x = kinks(material_, {});
+    if (material_.twist && !material_.inertias.empty()) {
+      const std::vector<double> turns = material_.twist->angle.knots();
+      x.insert(x.end(), turns.begin(), turns.end());
+    }
+    return inside(std::move(x));
+  }
   RodSection section(double x) const override {
     LinearFields f = linear_fields(strains_, x);
-    double inertia = 0;
-    for (const auto& [axis, per_length] : material_.inertias) inertia += per_length(x);  // all about x
-    return {std::move(f.psi_slope), std::move(f.psi), std::move(f.phi), material_.mass_per_length(x), inertia};
+    const bool stretches = std::any_of(strains_.begin(), strains_.end(),
+                                       [](const BeamStrain& s) { return s.kind == BeamData::Strain::elongation; });
+    return {std::move(f.psi_slope),       std::move(f.psi),      std::move(f.phi),
+            material_.mass_per_length(x), section_inertia(1, x), stretches ? std::move(f.gamma) : Matrix3X()};
   }
 
   static double of_strains(const std::vector<BeamStrain>& strains) {
@@ -299,7 +302,6 @@ class Beam final : public Body, public TurnedSections, private Rod {
 
   BeamMaterial material_;
   double length_;
-  bool bending_inertia_ = false;
   std::vector<BeamStrain> strains_;
   BeamQuadrature quadrature_;
   ModalShape shape_;

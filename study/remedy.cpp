@@ -77,10 +77,7 @@ std::string motion_remedy(const Prepared& prepared, const NonfiniteMotion& motio
 /// Where kinematics is exact and a deflection past the scene's limit ended the run: nothing says that the motion itself
 /// breaks down there. Empty where something else ended it.
 std::string limit_remedy(const Prepared& prepared, const RunSummary& summary) {
-  // The words of the run itself (core/simulation/monitor_deflections.cpp), which no other end has.
-  if (prepared.scene.formulation->terms().strain != StrainOrder::exact ||
-      summary.message.find(" times its length (limit") == std::string::npos)
-    return {};
+  if (prepared.scene.formulation->terms().strain != StrainOrder::exact || !summary.past_deflection) return {};
   const double limit = prepared.scene.deflection_limit;
   return fmt::format(
       " What to do: where the body may bend so far, let the run go on: limits.deflection is {0:g} of a body's length "

@@ -66,13 +66,21 @@ std::vector<std::string> watched_outputs(const Scene& scene) {
   return names;
 }
 
-/// The run of some equations, which may change.
+/// What looks at a run's outputs beside who asked for it, and is taken up with its checkpoints.
+class Looking {
+ public:
+  virtual ~Looking() = default;
+  virtual void look(const State& state) = 0;
+  virtual void remember(Memory& memory) = 0;
+};
+
+/// The run of some equations, which may change. \param looking may be null
 RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, const EquationsOfMotion& equations,
-                         ChangingEquations* changing, const EquationsOfMotion* beyond,
-                         const std::function<void(const State&)>& output) {
+                         ChangingEquations* changing, const EquationsOfMotion* beyond, Looking* looking) {
   const Scene& scene = prepared.scene;
   RunOptions options = options_of(prepared, settings.control);
   options.beyond = beyond;
+  if (looking != nullptr) options.remember = [looking](Memory& memory) { looking->remember(memory); };
   options.changing = changing;
   Timer timer(settings.checkpoint_seconds);
   if (settings.checkpoint)
@@ -94,7 +102,7 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
       *scene.model, equations, *scene.integrator, scene.initial, options,
       [&](const State& state) {
         settings.control.tell(state.time, options.end);
-        output(state);
+        if (looking != nullptr) looking->look(state);
         if (settings.output) settings.output(state, changing != nullptr ? changing->rung() : 0);
       },
       watch ? &*watch : nullptr);
@@ -103,7 +111,7 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
 }
 
 /// How far the run is from the coarse one that its formulations were chosen by.
-class Agreement {
+class Agreement final : public Looking {
  public:
   Agreement(const Prepared& prepared, const ChangingEquations& equations, const RungPlan& plan)
       : plan_(plan), equations_(equations) {
@@ -113,10 +121,14 @@ class Agreement {
       readers_.push_back(std::make_unique<OutputReader>(*outputs_, prepared.model(), *rung.equations));
     apart_ = outputs_->none();
   }
-  void look(const State& state) {
+  void look(const State& state) override {
     for (; next_ < plan_.readings.size() && plan_.readings[next_].time <= state.time; ++next_)
       if (plan_.readings[next_].time == state.time)
         outputs_->raise(readers_[equations_.rung()]->read(state), plan_.readings[next_].values, apart_);
+  }
+  void remember(Memory& memory) override {
+    memory(next_);
+    memory(apart_);
   }
   /// Where the motion itself is another, so are its errors.
   [[nodiscard]] std::string text() const {
@@ -144,8 +156,7 @@ RunSummary run_planned(const Prepared& prepared, const RunSettings& settings, Ru
   for (const PlannedStretch& s : plan.stretches) stretches.push_back(s.stretch);
   ChangingEquations equations(prepared.rungs, std::move(stretches));
   Agreement agreement(prepared, equations, plan);
-  RunSummary summary = run_equations(prepared, settings, equations, &equations, nullptr,
-                                     [&](const State& state) { agreement.look(state); });
+  RunSummary summary = run_equations(prepared, settings, equations, &equations, nullptr, &agreement);
   plan.run_evaluations = equations.evaluations();
   if (summary.status != RunStatus::completed) return summary;
   std::string problem = plan.problem;
@@ -157,7 +168,7 @@ RunSummary run_planned(const Prepared& prepared, const RunSettings& settings, Ru
 }
 
 RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, const EquationsOfMotion* beyond) {
-  return run_equations(prepared, settings, *prepared.equations, nullptr, beyond, [](const State&) {});
+  return run_equations(prepared, settings, *prepared.equations, nullptr, beyond, nullptr);
 }
 
 /// Where there is no estimate: why, and what is known without one.

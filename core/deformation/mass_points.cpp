@@ -24,8 +24,8 @@ std::vector<MassPoint> mass_points(const Body& body) {
   if (const Rod* rod = body.rod()) {
     const RodTable table(*rod);
     for (std::size_t k = 0; k < table.sections.size(); ++k) {
-      const Matrix3 inertia = Vector3(table.inertias[k], 0, 0).asDiagonal();
-      points.push_back({table.masses[k], second_moment(inertia), body.station(table.quadrature.nodes()[k]).value()});
+      points.push_back(
+          {table.masses[k], second_moment(table.inertias[k]), body.station(table.quadrature.nodes()[k]).value()});
     }
     return points;
   }
@@ -56,7 +56,7 @@ std::vector<MassPoint> mass_points(const std::vector<Particle>& particles, const
 std::vector<double> mass_beyond(const Body& body, double x) {
   const Rod* rod = body.rod();
   if (rod == nullptr) return {};
-  return RodTable(*rod).beyond(x).of_mass;
+  return RodTable(*rod).beyond(x).shares;
 }
 
 FieldLoad::FieldLoad(const Model& model) {

@@ -100,12 +100,21 @@ std::vector<M3<S>> rotations(const RodTable& table, const VX<S>& q) {
   return R;
 }
 
-/// r′ = R e_x without e_x and its first order.
+/// γ of a section at q.
+template <class S>
+V3<S> elongation(const RodSection& section, const VX<S>& q) {
+  if (section.elongation.cols() == 0) return V3<S>::Zero();
+  return section.elongation.template cast<S>() * q;
+}
+
+/// r′ = R (e_x + γ) without e_x and its first order.
 template <class S>
 V3<S> stretch(const M3<S>& R, const RodSection& section, const VX<S>& q) {
   const V3<S> turn = section.rotation.template cast<S>() * q;
   const V3<S> axis = V3<S>::UnitX();
-  return R.col(0) - axis - turn.cross(axis);
+  V3<S> rest = R.col(0) - axis - turn.cross(axis);
+  if (const V3<S> gamma = elongation<S>(section, q); section.elongation.cols() > 0) rest += R * gamma - gamma;
+  return rest;
 }
 
 template <class S, class Derived>
@@ -139,23 +148,31 @@ RodMotionOf<S>::RodMotionOf(const RodTable& table, const Vector& q, const Vector
   Eigen::Matrix<S, 3, Eigen::Dynamic> omega = Eigen::Matrix<S, 3, Eigen::Dynamic>::Zero(3, nodes);
   for (Eigen::Index k = 0; k < nodes; ++k) {
     const M3<S>& R = R_[static_cast<std::size_t>(k)];
-    const V3<S> t = R.col(0);
     const RodSection& section = table.sections[static_cast<std::size_t>(k)];
+    const bool stretches = section.elongation.cols() > 0;
+    const V3<S> along = R * (V3<S>::UnitX() + elongation<S>(section, q));
     const V3<S> rate = R * V3<S>(section.strain.cast<S>() * q_dot);
     for (Eigen::Index i = 0; i < n; ++i) {
       const Vector3 psi = section.rotation.col(i);
       const V3<S> wi = psi.cast<S>() + vector<S>(at_nodes_, k, w + 3 * i);
       omega.col(k) += wi * q_dot[i];
-      slopes_.template block<1, 3>(k, P + 3 * i) =
-          (wi.cross(t) - psi.cross(Vector3::UnitX()).template cast<S>()).transpose();
+      V3<S> slope = wi.cross(along) - psi.cross(Vector3::UnitX()).template cast<S>();
+      if (stretches) {
+        const V3<S> gamma = Vector3(section.elongation.col(i)).cast<S>();
+        slope += R * gamma - gamma;
+      }
+      slopes_.template block<1, 3>(k, P + 3 * i) = slope.transpose();
     }
     slopes_.template block<1, 3>(k, b) = V3<S>(omega.col(k)).cross(rate).transpose();
   }
   integrate(P, 3 * n + 3);
   for (Eigen::Index k = 0; k < nodes; ++k) {
-    const V3<S> t = R_[static_cast<std::size_t>(k)].col(0), spin = omega.col(k);
+    const M3<S>& R = R_[static_cast<std::size_t>(k)];
+    const RodSection& section = table.sections[static_cast<std::size_t>(k)];
+    const V3<S> along = R * (V3<S>::UnitX() + elongation<S>(section, q)), spin = omega.col(k);
+    const V3<S> stretching = R * (elongation<S>(section, q_dot) * S(2));
     slopes_.template block<1, 3>(k, a) =
-        (vector<S>(at_nodes_, k, b).cross(t) + spin.cross(V3<S>(spin.cross(t)))).transpose();
+        (vector<S>(at_nodes_, k, b).cross(along) + spin.cross(V3<S>(spin.cross(along) + stretching))).transpose();
   }
   integrate(a, 3);
 }

@@ -10,8 +10,9 @@
 
 namespace withy {
 
-/// All sections of a rod at q, q̇, in the axes of its body. With u_i = R κ_i, ω = Σ w_i q̇_i and t = R e_x,
-///   r′ = t,  w_i′ = u_i,  P_i′ = w_i × t,  b′ = ω × Σ u_i q̇_i,  a′ = b × t + ω × (ω × t),
+/// All sections of a rod at q, q̇, in the axes of its body. With u_i = R κ_i, e_i = R γ_i, ω = Σ w_i q̇_i and
+/// s = R (e_x + γ),
+///   r′ = s,  w_i′ = u_i,  P_i′ = w_i × s + e_i,  b′ = ω × Σ u_i q̇_i,  a′ = b × s + ω × (ω × s + 2 Σ e_i q̇_i),
 /// all zero at x = 0: positions, partial velocities and the biases b = Ẇ q̇, a = Ṗ q̇. What r, w_i, P_i are to first
 /// order is known, X + Φ q, ψ_i, Φ_i; the rest is integrated.
 /// S is double or Jet.

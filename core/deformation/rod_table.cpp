@@ -1,5 +1,6 @@
 #include "withy/core/deformation/rod_table.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -53,11 +54,12 @@ std::vector<double> lagrange(const double* nodes, double x) {
 
 /// Masses and inertias of a rod beyond a point of it, at the nodes of panels that go over kinks of these.
 struct SpreadMass {
-  std::vector<double> masses, inertias;
+  std::vector<double> masses;
+  std::vector<Matrix3> inertias;
 
   /// \param edges of the panels of `quadrature`
   SpreadMass(const Rod& rod, const PanelQuadrature& quadrature, const std::vector<double>& edges, double from)
-      : masses(quadrature.nodes().size()), inertias(masses.size()) {
+      : masses(quadrature.nodes().size()), inertias(masses.size(), Matrix3::Zero()) {
     std::vector<double> pieces = together(edges, rod.mass_kinks());
     std::erase_if(pieces, [from](double x) { return x <= from; });
     if (pieces.empty()) return;
@@ -79,7 +81,11 @@ struct SpreadMass {
   }
   [[nodiscard]] bool possible() const {
     return std::all_of(masses.begin(), masses.end(), [](double m) { return m > 0; }) &&
-           std::all_of(inertias.begin(), inertias.end(), [](double J) { return J >= 0; });
+           std::all_of(inertias.begin(), inertias.end(), [](const Matrix3& J) {
+             if (J.isDiagonal(0)) return (J.diagonal().array() >= 0).all();
+             const Eigen::SelfAdjointEigenSolver<Matrix3> principal(J, Eigen::EigenvaluesOnly);
+             return principal.eigenvalues()[0] >= -1e-14 * J.trace();  // zero but for rounding
+           });
   }
 };
 
@@ -110,26 +116,25 @@ void RodTable::add_sections() {
     before = x;
     if (!over_.empty()) continue;
     masses.push_back(weight * sections.back().mass_per_length);
-    inertias.push_back(weight * sections.back().inertia_per_length);
+    inertias.emplace_back(weight * sections.back().inertia_per_length);
   }
 }
 
-RodTable::Shares RodTable::beyond(double x) const {
-  Shares shares;
+RodTable::Part RodTable::beyond(double x) const {
+  Part part;
   const std::size_t nodes = masses.size();
   if (over_.empty()) {
     const Eigen::RowVectorXd before = quadrature.weights_to(x);
-    for (std::size_t k = 0; k < nodes; ++k)
-      shares.of_mass.push_back(1 - before[static_cast<Eigen::Index>(k)] / quadrature.weights()[k]);
-    shares.of_inertia = shares.of_mass;
-    return shares;
+    for (std::size_t k = 0; k < nodes; ++k) {
+      part.shares.push_back(1 - before[static_cast<Eigen::Index>(k)] / quadrature.weights()[k]);
+      part.inertias.emplace_back(part.shares.back() * inertias[k]);
+    }
+    return part;
   }
-  const SpreadMass rest(*rod, quadrature, over_, x);
-  for (std::size_t k = 0; k < nodes; ++k) {
-    shares.of_mass.push_back(rest.masses[k] / masses[k]);
-    shares.of_inertia.push_back(inertias[k] > 0 ? rest.inertias[k] / inertias[k] : 0);
-  }
-  return shares;
+  SpreadMass rest(*rod, quadrature, over_, x);
+  for (std::size_t k = 0; k < nodes; ++k) part.shares.push_back(rest.masses[k] / masses[k]);
+  part.inertias = std::move(rest.inertias);
+  return part;
 }
 
 std::vector<RodTable::Piece> RodTable::pieces_between(double from, double to) const {

@@ -44,15 +44,18 @@ struct RodTable {
   const Rod* rod;
   PanelQuadrature quadrature;
   std::vector<RodSection> sections;         ///< at the nodes
-  std::vector<double> masses, inertias;     ///< of the nodes [kg], about their axis [kg m²]
+  std::vector<double> masses;               ///< of the nodes [kg]
+  std::vector<Matrix3> inertias;            ///< rotary, of the nodes, about their centres, section axes [kg m²]
   PanelQuadrature turn;                     ///< on [0, 1], for the rotation between two nodes
   std::vector<std::vector<Piece>> to_node;  ///< pieces_between the node before, or the root, and each node
 
-  /// Of the nodes' masses and inertias the shares that are beyond x in [0, length].
-  struct Shares {
-    std::vector<double> of_mass, of_inertia;
+  /// What of the nodes is beyond a point of the rod.
+  struct Part {
+    std::vector<double> shares;     ///< of the masses
+    std::vector<Matrix3> inertias;  ///< as those of the whole
   };
-  [[nodiscard]] Shares beyond(double x) const;
+  /// x in [0, length].
+  [[nodiscard]] Part beyond(double x) const;
 
  private:
   void add_sections();

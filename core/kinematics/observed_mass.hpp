@@ -178,6 +178,18 @@ inline void add_rod(const sweep::RodKinematics<Planar>& rod, const sweep::RodWor
     add_particles<Planar>(V, m, r, v, part);
   }
   part.mass += rod.integrals.mass;
+  if (rod.rotary.empty()) return;
+  // ½ (1, q̇ᵀ) J (1, q̇) with the rates of the sections about the normal, V.w + Σ ψ_i q̇_i.
+  const double *of_modes = rod.rotary.data() + 1, *gram = of_modes + n;
+  double h = rod.rotary[0] * V.w, along = 0;
+  for (int i = 0; i < n; ++i) {
+    h += of_modes[i] * q_dot[i];
+    double row = of_modes[i] * V.w;
+    for (int j = 0; j < n; ++j) row += gram[i * n + j] * q_dot[j];
+    along += row * q_dot[i];
+  }
+  part.h.w += h;
+  part.kinetic += 0.5 * (V.w * h + along);
 }
 
 inline void add_rod(const sweep::RodKinematics<Spatial>& rod, const sweep::RodWork& work, int n, const double* q_dot,
@@ -199,9 +211,10 @@ inline void add_rod(const sweep::RodKinematics<Spatial>& rod, const sweep::RodWo
       v[c] = m * v[c];
     }
     add_particles<Spatial>(V, m, r, v, part);
-    if (rod.inertia.empty()) continue;
-    const Pack* t = work.slope + Rod::axis(n) * packs + k;
-    add_turning(rod.inertia[static_cast<std::size_t>(k)], {t[0], t[packs], t[2 * packs]}, omega, V, part);
+    for (std::size_t j = 0; j < rod.axes_each; ++j) {
+      const Pack& J = rod.axes[static_cast<std::size_t>(k) * rod.axes_each + j].J;
+      add_turning(J, sweep::inertia_axis(rod, n, k, j, work), omega, V, part);
+    }
   }
   part.mass += rod.integrals.mass;
 }

@@ -75,7 +75,7 @@ void Plan::add_cut(const SectionPlace& place) {
   beyond.particles = given->particles;
   beyond.sections = given->sections;
   if (body.rod != nullptr) {
-    cut.rod_shares = RodTable(*node.body->rod()).beyond(place.x);
+    cut.of_rod = RodTable(*node.body->rod()).beyond(place.x);
   } else if (body.modes > 0) {
     cut.points = points_of(beyond, body.order);
     for (const Section& s : beyond.sections) cut.rotary.push_back({s.inertia, {s.at, true}});
@@ -122,6 +122,7 @@ void Plan::add_rods() {
     for (const SectionFields& s : body.sections) node.stations.push_back({s.at, {}});
     auto rod = std::make_shared<RodPlan>();
     rod->kinematics = sweep::RodKinematics<Spatial>(node);
+    rod->inertias = RodTable(*node.rod).inertias;
     rod->work = rod_packs;
     rod_packs += sweep::rod_work(rod->kinematics, static_cast<int>(body.modes));
     body.rod = std::move(rod);

@@ -42,7 +42,8 @@ struct SectionFrame {
 /// A rod of exact kinematics; its stations are the body's sections.
 struct RodPlan {
   sweep::RodKinematics<Spatial> kinematics;
-  std::size_t work = 0;  ///< first of its packs among those of all rods
+  std::vector<Matrix3> inertias;  ///< of its nodes, as RodTable has them
+  std::size_t work = 0;           ///< first of its packs among those of all rods
 };
 
 struct BodyPlan {
@@ -76,7 +77,7 @@ struct CutPlan {
   RigidInertia rigid;               ///< of a rigid body
   std::vector<PointFields> points;  ///< mass of a flexible one
   std::vector<RotarySection> rotary;
-  RodTable::Shares rod_shares;      ///< of a rod: the part of each node
+  RodTable::Part of_rod;            ///< of a rod: what of its nodes
   std::vector<std::size_t> hinges;  ///< that hang on the part
   std::vector<double> frames;       ///< of the body: the share that the part has of what acts there
   /// Where loads on distributed mass act on the part, of a body that is no rod: their frames are the body's from

@@ -105,14 +105,17 @@ void each_rod_node(Pass<S>& pass, const BodyPlan& body, Of&& of) {
   }
 }
 
-/// The shares of a rod's node that belong to a part.
-struct NodeShare {
-  double mass = 1, inertia = 1;
+/// What of a rod's node belongs to a part: the share of its mass, and rotary inertia in the section's axes.
+struct NodePart {
+  double share = 1;
+  const Matrix3& inertia;
 };
-inline NodeShare share_of(const BodyPlan&, int, std::size_t) { return {}; }
-inline NodeShare share_of(const CutPlan& cut, int pack, std::size_t lane) {
+inline NodePart part_of(const BodyPlan& whole, int pack, std::size_t lane) {
+  return {1, whole.rod->inertias[lanes * static_cast<std::size_t>(pack) + lane]};
+}
+inline NodePart part_of(const CutPlan& cut, int pack, std::size_t lane) {
   const std::size_t k = lanes * static_cast<std::size_t>(pack) + lane;
-  return {cut.rod_shares.of_mass[k], cut.rod_shares.of_inertia[k]};
+  return {cut.of_rod.shares[k], cut.of_rod.inertias[k]};
 }
 
 template <class S, class Mass>
@@ -122,7 +125,7 @@ MassMoment<S> mass_moment(Pass<S>& pass, const BodyPlan& body, const Mass& part)
   if constexpr (!std::is_same_v<S, Second>) {
     if (body.rod != nullptr) {
       each_rod_node(pass, body, [&](double c, const V3<S>& r, const V3<S>&, int k, std::size_t lane) {
-        const double share = share_of(part, k, lane).mass;
+        const double share = part_of(part, k, lane).share;
         m.mass += c * c * share;
         m.moment += r * S(c * share);
       });
@@ -155,19 +158,18 @@ MomentumOf<S> of_point(double c, const V3<S>& r, const V3<S>& relative, const Tw
   return {{r.cross(v), v * S(c)}, relative.dot(v)};
 }
 
-/// Rotary inertia of a rod's node about its axis t, with the angular velocity ω relative to the body.
+/// Momentum of a rod's node with this rotary inertia in its section's axes.
 inline MomentumOf<First> rod_turning(Pass<First>& pass, const BodyPlan& body, int k, std::size_t lane,
-                                     const TwistOf<First>& V) {
+                                     const Matrix3& inertia, const TwistOf<First>& V) {
   using Rod = sweep::RodKinematics<Spatial>;
   const Rod& rod = body.rod->kinematics;
-  if (rod.inertia.empty()) return {};
+  if (rod.axes_each == 0) return {};
   const sweep::RodWork work = pass.rod_work(body);
   const int n = static_cast<int>(body.modes), packs = rod.integrals.packs;
   const auto at = [&](const Pack* first, int function) {
     const Pack* f = first + function * packs + k;
     return Vector3(f[0][lane], f[packs][lane], f[2 * packs][lane]);
   };
-  const Vector3 t = at(work.slope, Rod::axis(n));
   Vector3 w = Vector3::Zero(), slope = at(work.value, Rod::b(n));
   for (int i = 0; i < n; ++i) {
     const Vector3 wi = at(work.value, Rod::w + 3 * i);
@@ -175,10 +177,13 @@ inline MomentumOf<First> rod_turning(Pass<First>& pass, const BodyPlan& body, in
     w += wi * now(u);
     slope += wi * rate(u);
   }
-  const V3<First> axis = with_rates<First>(t, Vector3(w.cross(t)));
-  const V3<First> relative = with_rates<First>(w, slope);
-  const V3<First> h =
-      axis * First(axis.dot(V3<First>(V.w + relative)) * rod.inertia[static_cast<std::size_t>(k)][lane]);
+  const Pack turn = work.rotation[4 * k + static_cast<int>(lane)];
+  const Matrix3 R = Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
+  const Matrix3 J = R * inertia * R.transpose();
+  const V3<First> relative = with_rates<First>(w, slope), spin = V.w + relative;
+  // d/dt (J ω), with J fixed to the section, which turns with w.
+  const Vector3 h_now = J * now(spin);
+  const V3<First> h = with_rates<First>(h_now, Vector3(w.cross(h_now) + J * (rate(spin) - w.cross(now(spin)))));
   return {{h, V3<First>::Zero()}, relative.dot(h)};
 }
 
@@ -195,11 +200,11 @@ MomentumOf<S> own_momentum(Pass<S>& pass, std::size_t index, const BodyPlan& bod
   if constexpr (std::is_same_v<S, First>) {
     if (body.rod != nullptr) {
       each_rod_node(pass, body, [&](double c, const V3<S>& r, const V3<S>& v, int k, std::size_t lane) {
-        const NodeShare share = share_of(part, k, lane);
-        const S of_mass(share.mass), of_inertia(share.inertia);
-        const MomentumOf<S> own = of_point(c, r, v, V), turning = rod_turning(pass, body, k, lane, V);
-        sum.h += TwistOf<S>{own.h.w * of_mass + turning.h.w * of_inertia, own.h.v * of_mass};
-        sum.along += own.along * of_mass + turning.along * of_inertia;
+        const NodePart here = part_of(part, k, lane);
+        const S share(here.share);
+        const MomentumOf<S> own = of_point(c, r, v, V), turning = rod_turning(pass, body, k, lane, here.inertia, V);
+        sum.h += TwistOf<S>{own.h.w * share + turning.h.w, own.h.v * share};
+        sum.along += own.along * share + turning.along;
       });
       return sum;
     }

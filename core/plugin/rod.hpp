@@ -10,17 +10,18 @@ namespace withy {
 
 /// A section of a rod.
 struct RodSection {
-  Matrix3X strain;            ///< κ_i [1/m], section axes, 3×n
-  Matrix3X rotation;          ///< ψ_i = ∫₀ˣ κ_i, 3×n; zero at x = 0
-  Matrix3X deflection;        ///< Φ_i = ∫₀ˣ ψ_i × e_x [m], 3×n; zero at x = 0
-  double mass_per_length;     ///< [kg/m]
-  double inertia_per_length;  ///< rotary inertia about the section's own x axis [kg m], ≥ 0
+  Matrix3X strain;             ///< κ_i [1/m], section axes, 3×n
+  Matrix3X rotation;           ///< ψ_i = ∫₀ˣ κ_i, 3×n; zero at x = 0
+  Matrix3X deflection;         ///< Φ_i = ∫₀ˣ ψ_i × e_x + γ_i [m], 3×n; zero at x = 0
+  double mass_per_length;      ///< [kg/m]
+  Matrix3 inertia_per_length;  ///< rotary inertia about the section's centre [kg m], section axes, semidefinite
+  Matrix3X elongation = {};  ///< γ_i: extension and the strains of shear, section axes, 3×n; empty: the rod has none
 };
 
-/// An inextensible Kirchhoff rod along x of its body's frame, clamped to that frame at x = 0. Twist rate and curvatures
-/// κ = Σ κ_i(x) q_i are linear in the modal coordinates; the sections' rotation R and the axis r follow without
-/// expansion (theory, section 2):
-///   R′ = R κ̂,  r′ = R e_x,  R(0) = 1,  r(0) = 0.
+/// A rod along x of its body's frame, clamped to that frame at x = 0. Twist rate and curvatures κ = Σ κ_i(x) q_i and,
+/// where it has them, extension and shear γ = Σ γ_i(x) q_i are linear in the modal coordinates; the sections' rotation
+/// R and the axis r follow without expansion (theory, section 2; Simo 1985):
+///   R′ = R κ̂,  r′ = R (e_x + γ),  R(0) = 1,  r(0) = 0.
 /// Stations and particles of the body with coordinate X.x lie on the axis at x = X.x, and the second-order expansion
 /// of their motion is their PointExpansion. Immutable, as its body.
 class Rod {

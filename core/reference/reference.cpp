@@ -120,11 +120,10 @@ void ReferenceDynamics::check(const Model& model, Terms terms) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
     if (is_exact(model, b, terms) && node.body->rod() == nullptr)
-      throw std::invalid_argument(
-          "body '" + node.name +
-          "' has no exact kinematics: a body offers it that is a rod clamped at its root, without extension, shear "
-          "and rotary inertia in bending; "
-          "give it a formulation of its own");
+      throw std::invalid_argument("body '" + node.name +
+                                  "' has no exact kinematics: a beam offers it whose modes are clamped at its root; "
+                                  "give it a formulation of its "
+                                  "own");
   }
 }
 

@@ -175,7 +175,7 @@ class ReferenceTree {
         for (std::size_t k = 0; k < rod.sections.size(); ++k) {
           const WorldMotion<S> A = outward<S>(bodies_[b], rods_[b]->at_node(k), first_mode_[b]);
           particle(rod.masses[k], A);
-          section_of(Matrix3(rod.inertias[k] * Vector3::UnitX() * Vector3::UnitX().transpose()), A);
+          section_of(rod.inertias[k], A);
         }
         return;
       }

@@ -40,6 +40,8 @@ class Monitor {
   }
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
+  /// Whether that is a deflection past its limit.
+  [[nodiscard]] bool past_deflection() const { return past_deflection_; }
   /// Energy against the work done. A state where they balance is to be trusted. Brings the observation there.
   void audit_energy(const State& state);
   [[nodiscard]] const Observation& seen() const { return seen_; }
@@ -72,6 +74,7 @@ class Monitor {
   /// For a run that goes back to a state before its bad end.
   void forget_bad_end() {
     excess_.clear();
+    past_deflection_ = false;
     sign_change_.reset();
   }
   /// What has been seen so far, with its part of the summary.
@@ -157,6 +160,7 @@ class Monitor {
   std::vector<Tip> wholes_;  ///< of bodies in segments
   double deflection_limit_;
   std::string excess_;
+  bool past_deflection_ = false;
   std::size_t excess_order_ = 0;  ///< of several at one state the first body's is told
   State last_;                    ///< the accepted state before
   State between_;                 ///< a state within the last step

@@ -129,6 +129,7 @@ class Run final : public SteppingObserver {
       stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
     } else if (!monitor_.excess().empty()) {
       stop_ = {RunStatus::diverged, monitor_.excess()};
+      summary_.past_deflection = monitor_.past_deflection();
     }
     return stop_.status == RunStatus::completed;
   }
@@ -218,6 +219,7 @@ class Run final : public SteppingObserver {
     motion_gap_.remember(memory);
     if (watch_ != nullptr) watch_->remember(memory);
     if (options_.changing != nullptr) options_.changing->remember(memory);
+    if (options_.remember) options_.remember(memory);
     memory(emitted_);
     halves_.remember(memory);
     double spent = summary_.cpu_seconds + thread_cpu_seconds() - cpu_began_;

@@ -14,6 +14,7 @@
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/run_event.hpp"
 #include "withy/core/simulation/validity.hpp"
 
@@ -72,6 +73,7 @@ struct RunOptions {
   bool past_stops = false;            ///< an event that ends a run acts as any other, and the run goes on to its end
   std::function<bool()> checkpoint_due;               ///< asked between steps: whether `checkpoint` is to be called
   std::function<void(const Checkpoint&)> checkpoint;  ///< called then and when the run is interrupted
+  std::function<void(Memory&)> remember;              ///< what else goes into checkpoints, and comes back on a resume
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: begin at the initial state
   /// Equations that change along the run, the ones it is made with: they go over at their own times. Null: they stay.
   ChangingEquations* changing = nullptr;
@@ -100,8 +102,9 @@ struct RunSummary {
   /// had not changed the sign of its determinant and energy and work balanced to within the limit or half of the
   /// energy.
   State final;
-  double reached = 0;           ///< time of the last accepted state [s]
-  bool ended_by_event = false;  ///< completed where an event of the scene ended it, before its time
+  double reached = 0;            ///< time of the last accepted state [s]
+  bool ended_by_event = false;   ///< completed where an event of the scene ended it, before its time
+  bool past_deflection = false;  ///< a deflection past RunOptions::deflection_limit ended it
   /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and, between
   /// them, along the cubic through their coordinates and rates; body axes x, y, z [m]. Of a body in segments under its
   /// own name, over the accepted steps. None of these depends on the output interval.

@@ -175,6 +175,19 @@ bool Stepping::renew_clocks() {
   return true;
 }
 
+/// One step. An integrator that stays where it is would be asked for ever, one that goes too far would pass what is to
+/// happen there.
+void Stepping::step_to(double limit) {
+  const double from = state().time;
+  const std::size_t made = stepper_->statistics().evaluations;
+  ended_.step = stepper_->step(limit);
+  step_evaluations_ += stepper_->statistics().evaluations - made;
+  if (ended_.step.outcome != StepResult::Outcome::ok || (state().time > from && state().time <= limit)) return;
+  throw PluginError("the integrator of this scene says of a step that it is done, which began at " +
+                    std::to_string(from) + " s, was to end at " + std::to_string(limit) +
+                    " s at the latest, and ended at " + std::to_string(state().time) + " s: no result can be trusted");
+}
+
 /// Steps to a time; false where stepping ends before. Not watching: a step taken back is made again to end at a zero,
 /// and nothing comes between.
 bool Stepping::to(double limit, bool watching) {
@@ -184,10 +197,7 @@ bool Stepping::to(double limit, bool watching) {
       if (!zeros_.empty()) before_ = state();
     }
     look_ahead();
-    const std::size_t made = stepper_->statistics().evaluations;
-    ended_.step =
-        stepper_->step(std::min({limit, looked_until_, courses_.latest_end(state().time), end_beyond_kink()}));
-    step_evaluations_ += stepper_->statistics().evaluations - made;
+    step_to(std::min({limit, looked_until_, courses_.latest_end(state().time), end_beyond_kink()}));
     check_arithmetic();
     if (ended_.step.outcome != StepResult::Outcome::ok) return sound(state()) && end(Cause::failed);
     if (watching && !zeros_.empty()) {

@@ -106,6 +106,7 @@ class Stepping {
   using Zero = ZeroWatch::Zero;
   bool to(double limit, bool watching);
   bool after_step();
+  void step_to(double limit);
   void check_arithmetic();
   bool act(std::span<const std::size_t> happened);
   bool leap(const std::vector<std::size_t>& acted);

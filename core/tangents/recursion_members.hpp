@@ -237,10 +237,10 @@ void Recursion<S>::for_mass(std::size_t b, OfParticle&& particle, OfSection&& se
   if constexpr (!truncating) {
     if (state.rod != nullptr) {
       for (std::size_t k = 0; k < state.rod->sections.size(); ++k) {
-        const double inertia = state.rod->inertias[k];
+        const Matrix3& inertia = state.rod->inertias[k];
         const PointMotionOf<S> m = rods_[b]->at_node(k);
         particle(m, state.rod->masses[k]);
-        if (inertia != 0) section(m, inertia * Vector3::UnitX() * Vector3::UnitX().transpose());
+        if (!inertia.isZero(0)) section(m, inertia);
       }
       return;
     }
@@ -262,8 +262,7 @@ const BodyIntegrals<typename Recursion<S>::Plain>& Recursion<S>::integrals(std::
       for (std::size_t k = 0; k < state.rod->sections.size(); ++k) {
         const PointMotionOf<Plain> m = (*known_)[b].rod->at_node(k);
         sums.add_particle(m, state.rod->masses[k]);
-        if (const double inertia = state.rod->inertias[k]; inertia != 0)
-          sums.add_section(m, inertia * Vector3::UnitX() * Vector3::UnitX().transpose());
+        if (const Matrix3& inertia = state.rod->inertias[k]; !inertia.isZero(0)) sums.add_section(m, inertia);
       }
       return sums;
     }

@@ -7,7 +7,7 @@ namespace withy {
 void enroll_exact(Enrollment& enrollment) {
   enroll_terms<StrainOrder::exact, Truncation::none, InStudies::rung>(
       enrollment, "exact",
-      "Inextensible rods whose strains are modal, kinematics not expanded: large deflections, conserves energy and "
+      "Rods whose strains are modal, kinematics not expanded: large deflections, conserves energy and "
       "momentum");
 }
 

@@ -13,8 +13,6 @@ class Exact final : public CompleteSecondOrder {
 
 }  // namespace
 
-Plugin<StrainKinematics> exact_kinematics() {
-  return kinematics_plugin<Exact>("exact", "Inextensible rods, not expanded");
-}
+Plugin<StrainKinematics> exact_kinematics() { return kinematics_plugin<Exact>("exact", "Rods, not expanded"); }
 
 }  // namespace withy

@@ -204,7 +204,11 @@ TEST(Closure, holds_for_every_body_of_random_trees) {
     const std::string& formulation = untruncated[seed % 3];
     const int bodies = 3 + static_cast<int>(seed % 5);
     const bool planar = seed % 4 == 0;
-    RandomScene random(seed, {.bodies = bodies, .planar = planar, .any_root = seed % 2 == 0 && formulation != "exact"});
+    RandomScene random(seed, {.bodies = bodies,
+                              .planar = planar,
+                              .any_root = seed % 2 == 0 && formulation != "exact",
+                              .rotary = seed % 7 < 3,
+                              .stretching = seed % 7 > 1 && seed % 7 < 5});
     Case c(random.text() + (planar ? "" : frame_loads(seed, bodies) + (seed % 5 < 2 ? fields : "")), formulation);
     c.state = random.state(*c.scene.model, c.scene.initial);
     const std::string what = formulation + ", seed " + std::to_string(seed);

@@ -96,6 +96,17 @@ TEST_P(Observations, agree_with_the_reference_in_a_plane) {
                             "seed " + std::to_string(seed), tolerance());
 }
 
+TEST_P(Observations, agree_with_the_reference_where_beams_stretch_and_shear) {
+  for (unsigned seed = 1; seed <= 25; ++seed) {
+    const SceneWish wish{.bodies = 2 + static_cast<int>(seed % 5),
+                         .planar = seed % 3 == 0,
+                         .any_root = seed % 4 == 0,
+                         .rotary = seed % 2 == 0,
+                         .stretching = true};
+    expect_as_the_reference(Case(seed, wish, GetParam()), "seed " + std::to_string(seed), tolerance());
+  }
+}
+
 TEST_P(Observations, agree_with_the_reference_where_beams_are_held_at_their_tip_or_their_root_moves) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const SceneWish wish{.bodies = 2 + static_cast<int>(seed % 5),

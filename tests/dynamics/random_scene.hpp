@@ -20,6 +20,7 @@ struct SceneWish {
   int modes = 0;            ///< in bending_y of every beam, half of them in bending_z and torsion; 0: one to three
   bool aligned = false;     ///< hinges are along x and z, frames are not turned
   bool rotary = false;      ///< sections have inertia in bending
+  bool stretching = false;  ///< beams have extension and shear
   bool varying = false;     ///< beams vary along their length, and have modes of their own: strains with kinks
 };
 
@@ -107,6 +108,16 @@ class RandomScene {
     return s.str();
   }
 
+  void stretch() {
+    const auto strain = [this](const char* name, double low, double high) {
+      text_ << "    " << name << ": {stiffness: " << number(low, high) << ", modes: " << whole(1, 2)
+            << ", family: orthogonal-polynomials}\n";
+    };
+    strain("extension", 300, 900);
+    strain("shear_y", 100, 300);
+    if (!wish_.planar) strain("shear_z", 100, 300);
+  }
+
   void add(int b, std::ostringstream& hinges) {
     const bool beam = b > 0 && chance(0.6);
     const std::string name = "b" + std::to_string(b);
@@ -132,6 +143,7 @@ class RandomScene {
                                                     : "")
               << "}\n";
       }
+      if (wish_.stretching) stretch();
       text_ << "    frames: {a: {at: tip, " << pose() << "}, m: {at: 0.31, " << pose() << "}, r: {at: root, " << pose()
             << "}}\n";
     } else {

@@ -79,7 +79,10 @@ Vector6 asked_of_freed(const Case& c, const Case& freed, std::size_t hinge, cons
 TEST_P(Reactions, a_reaction_is_what_the_equations_ask_for_where_the_hinge_is_freed) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const int bodies = 3 + static_cast<int>(seed % 4);
-    RandomScene random(seed, {.bodies = bodies, .any_root = seed % 2 == 0 && GetParam() != "exact"});
+    RandomScene random(seed, {.bodies = bodies,
+                              .any_root = seed % 2 == 0 && GetParam() != "exact",
+                              .rotary = seed % 4 == 2,
+                              .stretching = seed % 3 == 2});
     const std::string text = random.text() + frame_loads(seed, bodies);
     Case c(text, GetParam());
     c.state = random.state(*c.scene.model, c.scene.initial);
@@ -110,7 +113,10 @@ TEST_P(Reactions, the_section_at_a_beams_root_carries_what_its_hinge_carries) {
   int compared = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const int bodies = 4 + static_cast<int>(seed % 4);
-    RandomScene random(seed, {.bodies = bodies, .any_family = seed % 2 == 0 && GetParam() != "exact"});
+    RandomScene random(seed, {.bodies = bodies,
+                              .any_family = seed % 2 == 0 && GetParam() != "exact",
+                              .rotary = seed % 4 == 2,
+                              .stretching = seed % 3 == 2});
     Case c(random.text() + frame_loads(seed, bodies), GetParam());
     c.state = random.state(*c.scene.model, c.scene.initial);
     const Model& model = *c.scene.model;

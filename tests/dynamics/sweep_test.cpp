@@ -98,11 +98,23 @@ TEST_P(RandomTrees, sweep_solves_the_dense_equations_where_beams_vary) {
   }
 }
 
+/// Extension, shear and rotary inertia, of which rods of `exact` have what turns and stretches with their sections.
+TEST_P(RandomTrees, sweep_solves_the_dense_equations_where_beams_stretch_and_shear) {
+  for (unsigned seed = 1; seed <= 25; ++seed) {
+    const SceneWish wish{.bodies = 2 + static_cast<int>(seed % 5),
+                         .planar = seed % 3 == 0,
+                         .any_root = seed % 4 == 0,
+                         .rotary = seed % 2 == 0,
+                         .stretching = true};
+    const Case c(seed, wish, GetParam());
+    if (c.scene.model->layout().speeds > 0) expect_solves(c, "seed " + std::to_string(seed), tolerance());
+  }
+}
+
 /// Products of modes are summed in tiles, of which what is left over has a size of its own: in these formulations.
 TEST(MassProducts, of_any_number_of_modes_are_those_of_the_dense_equations) {
-  // Rods of `exact` have no inertia of their sections in bending.
   const std::pair<const char*, bool> kinds[] = {
-      {"linear", false}, {"quadratic", false}, {"quadratic", true}, {"exact", false}};
+      {"linear", false}, {"quadratic", false}, {"quadratic", true}, {"exact", false}, {"exact", true}};
   for (const auto& [formulation, rotary] : kinds) {
     for (int modes = 1; modes <= 13; ++modes) {
       for (const bool planar : {true, false}) {

@@ -11,6 +11,7 @@
 
 #include "four_bar.hpp"
 #include "withy/tests/conformance/allocations.hpp"
+#include "withy/tests/simulation/wrapped_steps.hpp"
 
 namespace withy::test {
 namespace {
@@ -83,37 +84,9 @@ TEST(ClosedLoops, TheLinkageOfTheGalleryTurnsAsItsPageSays) {
   for (const double value : read_sensors(made, summary.final)) EXPECT_TRUE(std::isfinite(value));
 }
 
-/// Steps as another integrator does, and says nothing of loops, as one that knows of none.
-class Unaware final : public Integrator {
- public:
-  explicit Unaware(std::shared_ptr<const Integrator> other) : other_(std::move(other)) {}
-  std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
-    return std::make_unique<Steps>(other_->start(equations, state));
-  }
-  int order() const override { return other_->order(); }
-
- private:
-  class Steps final : public Stepper {
-   public:
-    explicit Steps(std::unique_ptr<Stepper> own) : own_(std::move(own)) {}
-    StepResult step(double t_limit) override { return own_->step(t_limit); }
-    const State& state() const override { return own_->state(); }
-    void interpolate(double t, std::span<double> y) const override { own_->interpolate(t, y); }
-    void restart() override { own_->restart(); }
-    void jump(const State& state) override { own_->jump(state); }
-    std::vector<double> memory() const override { return own_->memory(); }
-    void resume(const State& state, std::span<const double> memory) override { own_->resume(state, memory); }
-    const StepStatistics& statistics() const override { return own_->statistics(); }
-
-   private:
-    std::unique_ptr<Stepper> own_;
-  };
-  std::shared_ptr<const Integrator> other_;
-};
-
 TEST(ClosedLoops, AreRefusedToIntegratorsThatDoNotSayThatTheyCloseThem) {
   Made made(four_bar(rigid_coupler, "{name: dopri5}"));
-  made.scene.integrator = std::make_shared<Unaware>(made.scene.integrator);
+  made.scene.integrator = std::make_shared<WrappedIntegrator<WrappedSteps>>(made.scene.integrator);
   try {
     run(made, 0.1);
     FAIL() << "it ran";

@@ -1,5 +1,6 @@
 #include "withy/core/sweep/rod/rod_kinematics.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -33,6 +34,39 @@ RodStation<Space> rod_station(const Pose& frame, double x, const RodSection& sec
   }
   station.first = std::move(first);
   return station;
+}
+
+/// γ_i at the nodes, as RodKinematics has them; none where no section has any.
+template <class Space>
+std::vector<Pack> elongations(const RodTable& table, const Pose& frame) {
+  constexpr std::size_t L = Space::linear;
+  const Eigen::Index n = table.sections.front().elongation.cols();
+  std::vector<Pack> packs(table.sections.size() / lanes * static_cast<std::size_t>(n) * L);
+  for (std::size_t k = 0; k < table.sections.size(); ++k) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Vector3 gamma = frame.R * table.sections[k].elongation.col(i);
+      Pack* at = packs.data() + ((k / lanes) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)) * L;
+      for (std::size_t c = 0; c < L; ++c) set_lane(at[c], k % lanes, gamma[static_cast<Eigen::Index>(c)]);
+    }
+  }
+  return packs;
+}
+
+/// RodKinematics<Planar>::rotary.
+std::vector<double> rotary_about_normal(const RodTable& table, const Pose& frame) {
+  const Eigen::Index n = table.rod->modes();
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  for (std::size_t k = 0; k < table.sections.size(); ++k) {
+    Eigen::VectorXd turn(n + 1);
+    turn[0] = 1;
+    for (Eigen::Index i = 0; i < n; ++i) turn[i + 1] = Planar::angle(frame.R * table.sections[k].rotation.col(i));
+    sums += (frame.R * table.inertias[k] * frame.R.transpose())(2, 2) * turn * turn.transpose();
+  }
+  if (!(sums(0, 0) > 0)) return {};
+  std::vector<double> all(sums.data(), sums.data() + n + 1);
+  for (Eigen::Index i = 1; i <= n; ++i)
+    for (Eigen::Index j = 1; j <= n; ++j) all.push_back(sums(j, i));
+  return all;
 }
 
 }  // namespace
@@ -96,10 +130,51 @@ RodKinematics<Planar>::RodKinematics(const NodeSpec& spec) {
   }
   X = std::move(places);
   first = std::move(linear);
+  elongation = elongations<Planar>(table, frame);
+  rotary = rotary_about_normal(table, frame);
   for (const double at : x) stations.push_back(rod_station<Planar>(frame, at, spec.rod->section(at)));
 }
 
 namespace {
+
+/// Principal axes of the nodes' inertia in the node's axes, one pack of nodes after the other.
+struct PrincipalAxes {
+  std::vector<RotaryTable<Spatial>::Axis> axes;
+  std::size_t each = 0;
+  bool about_x = true;  ///< of the rod
+
+  PrincipalAxes(const std::vector<Matrix3>& inertias, const Matrix3& R) {
+    std::vector<std::vector<std::pair<double, Vector3>>> found;
+    for (const Matrix3& J : inertias) {
+      found.emplace_back();
+      // Axes that a body gives as its own stay so to the last bit.
+      const bool own = J.isDiagonal(0);
+      const Eigen::SelfAdjointEigenSolver<Matrix3> principal(J);
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        const double about = own ? J(c, c) : principal.eigenvalues()[c];
+        if (!(about > rounding * J.trace())) continue;
+        found.back().emplace_back(about,
+                                  R * (own ? Vector3(Vector3::Unit(c)) : Vector3(principal.eigenvectors().col(c))));
+        about_x = about_x && own && c == 0;
+      }
+      each = std::max(each, found.back().size());
+    }
+    const Pack zero = spread(0.0);
+    axes.assign(inertias.size() / lanes * each, {zero, {zero, zero, zero}});
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      for (std::size_t j = 0; j < found[k].size(); ++j) {
+        RotaryTable<Spatial>::Axis& axis = axes[k / lanes * each + j];
+        set_lane(axis.J, k % lanes, found[k][j].first);
+        for (std::size_t c = 0; c < 3; ++c)
+          set_lane(axis.e[c], k % lanes, found[k][j].second[static_cast<Eigen::Index>(c)]);
+      }
+    }
+  }
+
+ private:
+  /// Below this share of the trace a principal inertia is what rounding left of zero.
+  static constexpr double rounding = 1e-15;
+};
 
 /// The turns of a rod from node to node, then from the node before each station to it.
 struct Turns {
@@ -191,7 +266,6 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   const std::vector<double>& nodes = table.quadrature.nodes();
   std::vector<Pack> places(static_cast<std::size_t>(integrals.packs) * 3);
   std::vector<Pack> linear(static_cast<std::size_t>(integrals.packs) * n * 12);
-  bool rotary = false;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const RodSection& section = table.sections[k];
     const Vector3 place = frame.p + nodes[k] * R.col(0);
@@ -200,17 +274,22 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
     for (std::size_t i = 0; i < n; ++i) {
       const auto mode = static_cast<Eigen::Index>(i);
       const Vector3 psi = section.rotation.col(mode);
+      Vector3 slope = psi.cross(Vector3::UnitX());
+      if (section.elongation.cols() > 0) slope += section.elongation.col(mode);
       Matrix3X fields(3, 4);
-      fields << section.strain.col(mode), psi, psi.cross(Vector3::UnitX()), section.deflection.col(mode);
+      fields << section.strain.col(mode), psi, slope, section.deflection.col(mode);
       fields = R * fields;
       for (std::size_t c = 0; c < 12; ++c)
         set_lane(linear[((k / lanes) * n + i) * 12 + c], k % lanes, fields.data()[c]);
     }
-    rotary = rotary || table.inertias[k] > 0;
   }
   X = std::move(places);
   first = std::move(linear);
-  if (rotary) inertia = packed(table.inertias.data(), nodes.size());
+  elongation = elongations<Spatial>(table, frame);
+  PrincipalAxes inertia(table.inertias, R);
+  axes_each = inertia.each;
+  about_axis = inertia.about_x && elongation.empty();
+  axes = std::move(inertia.axes);
   for (const double at : x) stations.push_back(rod_station<Spatial>(frame, at, spec.rod->section(at)));
 
   first_station = nodes.size();

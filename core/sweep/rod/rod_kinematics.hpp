@@ -2,11 +2,12 @@
 /// Exact kinematics of a rod in the sweeps: constants, in the axes of its node, and its sections at one state, four
 /// quadrature nodes a Pack.
 ///
-/// With u_i = R κ_i, ω = Σ w_i q̇_i and t = R e_x along the axis, integrals from the clamped root give
-///   r′ = t,   w_i′ = u_i,   P_i′ = w_i × t,   b′ = ω × Σ u_i q̇_i,   a′ = b × t + ω × (ω × t):
+/// With u_i = R κ_i, e_i = R γ_i, ω = Σ w_i q̇_i and t = R (e_x + γ) along the axis, integrals from the clamped root
+/// give
+///   r′ = t,   w_i′ = u_i,   P_i′ = w_i × t + e_i,   b′ = ω × Σ u_i q̇_i,   a′ = b × t + ω × (ω × t + 2 Σ e_i q̇_i):
 /// position, partial velocities, and what remains of the accelerations at q̈ = 0. In a plane R is the turn by
 /// Σ ψ_i q_i, w_i = ψ_i and b = 0. What r, w_i, P_i are to first order, X + Φ q, ψ_i, Φ_i, is tabulated; the rest is
-/// integrated, as RodTable says.
+/// integrated, as RodTable says. Most rods have no γ and spend nothing on it.
 #pragma once
 
 #include <algorithm>
@@ -128,9 +129,13 @@ struct RodStation {
 template <>
 struct RodKinematics<Planar> {
   RodIntegrals integrals;
-  double heading = 0;         ///< angle of the undeformed rod
-  SharedNumbers<Pack> X;      ///< undeformed place of node pack k: element 2k
-  SharedNumbers<Pack> first;  ///< ψ_i, Φ_i at node pack k: element (k·n + i)·3
+  double heading = 0;              ///< angle of the undeformed rod
+  SharedNumbers<Pack> X;           ///< undeformed place of node pack k: element 2k
+  SharedNumbers<Pack> first;       ///< ψ_i, Φ_i at node pack k: element (k·n + i)·3
+  SharedNumbers<Pack> elongation;  ///< γ_i, axes of the node, at node pack k: element (k·n + i)·2; empty: none
+  /// Rotary inertia of all sections about the normal, which no bending changes: Σ J, then Σ J ψ_i, then Σ J ψ_i ψ_j,
+  /// n×n [kg m²]; empty where there is none.
+  SharedNumbers<double> rotary;
   std::vector<RodStation<Planar>> stations;
 
   RodKinematics() = default;
@@ -150,11 +155,15 @@ struct RodKinematics<Spatial> {
   Triple direction = Triple::zero();  ///< of the undeformed rod
   SharedNumbers<Pack> X;              ///< undeformed place of node pack k: element 3k
   SharedNumbers<Pack> first;          ///< κ_i, ψ_i, Φ_i′, Φ_i at node pack k: element (k·n + i)·12
+  SharedNumbers<Pack> elongation;     ///< γ_i, axes of the node, at node pack k: element (k·n + i)·3; empty: none
   SharedNumbers<Pack> step;           ///< nine moments (see magnus) for each i of four turns: element (s·n + i)·9
   SharedNumbers<int> after;           ///< for each turn the turn before it, −1: the root; those to nodes come first
-  SharedNumbers<int> pieces;      ///< of each turn those that come before its last one, which is the turn's own step
-  std::size_t steps = 0;          ///< of all turns, then of pieces before the last, turn after turn; whole packs
-  SharedNumbers<Pack> inertia;    ///< of the nodes' sections about their axis; empty where they have none
+  SharedNumbers<int> pieces;  ///< of each turn those that come before its last one, which is the turn's own step
+  std::size_t steps = 0;      ///< of all turns, then of pieces before the last, turn after turn; whole packs
+  /// Rotary inertia of the nodes' sections about their principal axes; of node pack k from element k·axes_each on.
+  SharedNumbers<RotaryTable<Spatial>::Axis> axes;
+  std::size_t axes_each = 0;
+  bool about_axis = false;        ///< it is about the rod's own axis alone, which has no γ: at Rod::axis of the slopes
   std::size_t first_station = 0;  ///< turn to the first station
   std::vector<RodStation<Spatial>> stations;
 
@@ -193,7 +202,7 @@ template <class Space>
 std::size_t rod_scratch(const RodKinematics<Space>& rod, int modes) {
   int rotary = 0;
   if constexpr (Space::angular == 3) {
-    if (!rod.inertia.empty()) rotary = 3 * rod.integrals.packs + rotary_scratch(rod.integrals.packs, modes);
+    if (rod.axes_each > 0) rotary = 6 * rod.integrals.packs + rotary_scratch(rod.integrals.packs, modes);
   }
   return static_cast<std::size_t>(std::max(Space::linear * rod.integrals.packs, rotary));
 }
@@ -202,6 +211,36 @@ template <class Space>
 RodWork rod_work_at(const RodKinematics<Space>& rod, int modes, Pack* memory) {
   const int values = RodKinematics<Space>::functions(modes) * rod.integrals.packs;
   return {memory, memory + values, memory + 2 * values};
+}
+
+/// What γ adds to the integrands of node pack k, at `f`, in the plane. \param turn cosine and sine of the section's
+/// turn
+template <int N>
+inline void add_elongation(const RodKinematics<Planar>& rod, int modes, int k, const double* q, const double* q_dot,
+                           const Pack (&turn)[2], const Pack& rate, Pack* f) {
+  using Rod = RodKinematics<Planar>;
+  const int n = count<N>(modes), packs = rod.integrals.packs;
+  const Pack *first = rod.first.data() + k * n * 3, *gamma = rod.elongation.data() + k * n * 2;
+  Pack along[2] = {spread(0.0), spread(0.0)}, stretching[2] = {along[0], along[0]};
+  for (int i = 0; i < n; ++i) {
+    const Pack &x = gamma[2 * i], &y = gamma[2 * i + 1];
+    const Pack turned[2] = {turn[0] * x - turn[1] * y, turn[1] * x + turn[0] * y};
+    for (int c = 0; c < 2; ++c) {
+      f[c * packs] -= gamma[2 * i + c] * spread(q[i]);
+      f[(Rod::P(n) + 2 * i + c) * packs] += turned[c] - gamma[2 * i + c];
+      along[c] += turned[c] * spread(q[i]);
+      stretching[c] += turned[c] * spread(q_dot[i]);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    f[(Rod::P(n) + 2 * i) * packs] -= first[i * 3] * along[1];
+    f[(Rod::P(n) + 2 * i + 1) * packs] += first[i * 3] * along[0];
+  }
+  const Pack twice = rate + rate;
+  f[0] += along[0];
+  f[packs] += along[1];
+  f[Rod::a(n) * packs] -= rate * rate * along[0] + twice * stretching[1];
+  f[(Rod::a(n) + 1) * packs] += twice * stretching[0] - rate * rate * along[1];
 }
 
 /// Fills the work memory at q, q̇.
@@ -231,6 +270,10 @@ template <int N>
     const Pack inward = -rate * rate;
     f[Rod::a(n) * packs] = inward * cosine;
     f[(Rod::a(n) + 1) * packs] = inward * sine;
+    if (!rod.elongation.empty()) {
+      const Pack c = cosine * spread(dx) + sine * spread(dy), s = sine * spread(dx) - cosine * spread(dy);
+      add_elongation<N>(rod, n, k, q, q_dot, {c, s}, rate, f);
+    }
   }
   rod.integrals.integrate(work.slope, work.value, Rod::functions(n));
   for (int k = 0; k < packs; ++k) {
@@ -288,7 +331,28 @@ struct RodPack {
   }
 };
 
-/// r′ and w_i′ without what is tabulated, and the axis, at the turns found.
+/// γ of node pack k.
+template <int N>
+inline PackVector elongation(const RodKinematics<Spatial>& rod, int modes, int k, const double* q) {
+  const int n = count<N>(modes);
+  PackVector sum = PackVector::zero();
+  const Pack* gamma = rod.elongation.data() + k * n * 3;
+  for (int i = 0; i < n; ++i, gamma += 3)
+    for (int c = 0; c < 3; ++c) sum[c] += gamma[c] * spread(q[i]);
+  return sum;
+}
+
+/// Where P_i′ will stand: e_i at the turn R of node pack k.
+template <int N>
+inline void put_elongations(const RodKinematics<Spatial>& rod, int modes, int k, const PackMatrix& R,
+                            const RodPack& f) {
+  using Rod = RodKinematics<Spatial>;
+  const int n = count<N>(modes);
+  const Pack* gamma = rod.elongation.data() + k * n * 3;
+  for (int i = 0; i < n; ++i, gamma += 3) f.put(Rod::P(n) + 3 * i, R * PackVector{gamma[0], gamma[1], gamma[2]});
+}
+
+/// r′ and w_i′ without what is tabulated, the axis and, of a rod that has γ, e_i, at the turns found.
 template <int N>
 inline void rod_slopes(const RodKinematics<Spatial>& rod, int modes, const double* q, const RodWork& work) {
   using Rod = RodKinematics<Spatial>;
@@ -297,7 +361,11 @@ inline void rod_slopes(const RodKinematics<Spatial>& rod, int modes, const doubl
   for (int k = 0; k < packs; ++k) {
     const PackMatrix R = rotation(untransposed(work.rotation + 4 * k));
     const RodPack f{work.slope + k, packs};
-    const PackVector t = R * direction;
+    PackVector t = R * direction;
+    if (!rod.elongation.empty()) {
+      t = t + R * elongation<N>(rod, n, k, q);
+      put_elongations<N>(rod, n, k, R, f);
+    }
     f.put(Rod::axis(n), t);
     PackVector stretch = t - direction;
     const Pack* first = rod.first.data() + k * n * 12;
@@ -310,7 +378,7 @@ inline void rod_slopes(const RodKinematics<Spatial>& rod, int modes, const doubl
   }
 }
 
-/// Adds what is tabulated to r and w_i, and finds P_i′, b′ and the part ω × (ω × t) of a′.
+/// Adds what is tabulated to r and w_i, and finds P_i′, b′ and a′ without b × t.
 template <int N>
 inline void rod_rates(const RodKinematics<Spatial>& rod, int modes, const double* q, const double* q_dot,
                       const RodWork& work) {
@@ -319,7 +387,8 @@ inline void rod_rates(const RodKinematics<Spatial>& rod, int modes, const double
   for (int k = 0; k < packs; ++k) {
     const RodPack f{work.slope + k, packs}, y{work.value + k, packs};
     const PackVector t = f.get(Rod::axis(n));
-    PackVector omega = PackVector::zero(), rate = omega;
+    const bool stretches = !rod.elongation.empty();
+    PackVector omega = PackVector::zero(), rate = omega, stretching = omega;
     const Pack* first = rod.first.data() + k * n * 12;
     for (int i = 0; i < n; ++i, first += 12) {
       const PackVector u = f.get(Rod::w + 3 * i);
@@ -331,11 +400,18 @@ inline void rod_rates(const RodKinematics<Spatial>& rod, int modes, const double
         y.at[c * packs] += first[9 + c] * spread(q[i]);
       }
       y.put(Rod::w + 3 * i, w);
-      f.put(Rod::P(n) + 3 * i, cross(w, t) - PackVector{first[6], first[7], first[8]});
+      PackVector slope = cross(w, t) - PackVector{first[6], first[7], first[8]};
+      if (stretches) {
+        const PackVector e = f.get(Rod::P(n) + 3 * i);
+        slope = slope + e;
+        stretching = stretching + e * (2 * q_dot[i]);
+      }
+      f.put(Rod::P(n) + 3 * i, slope);
     }
     for (int c = 0; c < 3; ++c) y.at[c * packs] += rod.X[static_cast<std::size_t>(3 * k + c)];
     f.put(Rod::b(n), cross(omega, rate));
-    f.put(Rod::a(n), cross(omega, cross(omega, t)));
+    const PackVector carried = cross(omega, t);
+    f.put(Rod::a(n), cross(omega, stretches ? carried + stretching : carried));
   }
 }
 
@@ -352,6 +428,14 @@ inline void rod_bias(const RodKinematics<Spatial>& rod, int modes, const RodWork
       for (int c = 0; c < 3; ++c) y.at[(Rod::P(n) + 3 * i + c) * packs] += first[9 + c];
     }
   }
+}
+
+/// The unit vector of principal axis j of the inertia of node pack k's sections, at the turns found.
+inline PackVector inertia_axis(const RodKinematics<Spatial>& rod, int modes, int k, std::size_t j,
+                               const RodWork& work) {
+  if (rod.about_axis) return RodPack{work.slope + k, rod.integrals.packs}.get(RodKinematics<Spatial>::axis(modes));
+  const auto& axis = rod.axes[static_cast<std::size_t>(k) * rod.axes_each + j];
+  return rotation(untransposed(work.rotation + 4 * k)) * PackVector{axis.e[0], axis.e[1], axis.e[2]};
 }
 
 template <int N>

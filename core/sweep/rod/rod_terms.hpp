@@ -39,9 +39,26 @@ inline void integrate_rotary(const RodKinematics<Spatial>& rod, const RodWork& w
     const Pack rate = spread(q_dot[i]);
     for (int k = 0; k < 3 * packs; ++k) scratch[k] += w[3 * i * packs + k] * rate;
   }
-  const TurningSections sections{
-      packs, w, scratch, work.value + Rod::b(n) * packs, work.slope + Rod::axis(n) * packs, rod.inertia.data()};
-  add_rotary<N>(sections, V.w, n, scratch + 3 * packs, I, C, G, p, h);
+  constexpr std::size_t step = sizeof(RotaryTable<Spatial>::Axis) / sizeof(Pack);
+  Pack* turned = scratch + 3 * packs;
+  for (std::size_t j = 0; j < rod.axes_each; ++j) {
+    if (!rod.about_axis) {
+      for (int k = 0; k < packs; ++k) RodPack{turned + k, packs}.put(0, inertia_axis(rod, n, k, j, work));
+    }
+    const Pack* t = rod.about_axis ? work.slope + Rod::axis(n) * packs : turned;
+    const TurningSections sections{
+        packs, w, scratch, work.value + Rod::b(n) * packs, t, &rod.axes[j].J, step * rod.axes_each};
+    add_rotary<N>(sections, V.w, n, scratch + 6 * packs, I, C, G, p, h);
+  }
+}
+
+/// The same in the plane, where the sections' inertia about the normal turns with ψ_i q̇_i and nothing else.
+inline void integrate_rotary(const RodKinematics<Planar>& rod, int n, Planar::Inertia& I, Planar::Twist* C, double* G) {
+  const double* J = rod.rotary.data();
+  I.ww += *J++;
+  for (int i = 0; i < n; ++i) C[i].w += *J++;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) G[i * n + j] += J[i * n + j];
 }
 
 /// `integrate` of mass_table.hpp over the rod's nodes. r, P_i and a in the work memory become those times root masses,
@@ -94,7 +111,9 @@ inline void integrate(const RodKinematics<Space>& rod, const RodWork& work, int 
   put_linear(rod.integrals.mass, of_r, of_a, I, p);
   add_rows<Space>(r, a, P, packs, n, I, C, G, p, h);
   if constexpr (Space::angular == 3) {
-    if (!rod.inertia.empty()) integrate_rotary<N>(rod, work, n, q_dot, V, v, I, C, G, p, h);
+    if (rod.axes_each > 0) integrate_rotary<N>(rod, work, n, q_dot, V, v, I, C, G, p, h);
+  } else if (!rod.rotary.empty()) {
+    integrate_rotary(rod, n, I, C, G);
   }
 }
 

@@ -67,9 +67,12 @@ export class Sweep {
       const { bins, least, greatest } = c, width = (greatest - least) / bins.length || 1;
       const figure = new Figure({ title: c.name, width: 420, height: 250, x: { label: c.name, values: [least, greatest], room: 0.02 }, y: { label: 'cases', values: bins, include: [0] } });
       bins.forEach((count, i) => {
-        const x0 = figure.x(least + i * width), x1 = figure.x(least + (i + 1) * width), y = figure.y(count);
+        if (!(count > 0)) return;
+        // All cases may have one value: a bar about it.
+        const one = !(greatest > least), x0 = one ? figure.x(least) - 10 : figure.x(least + i * width);
+        const x1 = one ? x0 + 21 : figure.x(least + (i + 1) * width), y = figure.y(count);
         const bar = draw('rect', { x: x0, y, width: Math.max(1, x1 - x0 - 1), height: Math.max(0, figure.y(0) - y), fill: c.role === 'result' ? colours[0] : colours[6] });
-        answers(bar, () => [`${count} cases`, `${number(least + i * width)} to ${number(least + (i + 1) * width)}`]);
+        answers(bar, () => [`${count} cases`, one ? number(least) : `${number(least + i * width)} to ${number(least + (i + 1) * width)}`]);
         figure.marks.append(bar);
       });
       if (c.role === 'result') for (const [v, name] of [[c.p05, '5 %'], [c.median, 'median'], [c.p95, '95 %']]) {
