@@ -262,15 +262,14 @@ Eigen::VectorXd integrals(const std::vector<Particle>& particles, const std::vec
   return all;
 }
 
-/// The same of a rod's nodes, with these shares of them.
-Eigen::VectorXd integrals(const Body& body, const RodTable& table, const RodTable::Shares& shares) {
+/// The same of what belongs to a part of a rod's nodes.
+Eigen::VectorXd integrals(const Body& body, const RodTable& table, const RodTable::Part& part) {
   std::vector<Particle> particles;
   std::vector<withy::Section> sections;
   for (std::size_t k = 0; k < table.masses.size(); ++k) {
     const PointExpansion at = *body.station(table.quadrature.nodes()[k]);
-    particles.push_back({table.masses[k] * shares.of_mass[k], at});
-    const double inertia = table.inertias[k] * shares.of_inertia[k];
-    sections.push_back({Matrix3(Vector3(inertia, 0, 0).asDiagonal()), at});
+    particles.push_back({table.masses[k] * part.shares[k], at});
+    sections.push_back({part.inertias[k], at});
   }
   return integrals(particles, sections);
 }
