@@ -23,10 +23,13 @@ using Impulses = std::vector<Impulse>;
 constexpr std::size_t most_impulses = 1024;
 
 /// A motion of one coordinate that begins with its first copy and comes to rest with its last.
-class Shaped final : public Motion {
+class Shaped final : public Motion, public CourseOfTime {
  public:
   Shaped(std::unique_ptr<Motion> motion, Impulses impulses)
-      : motion_(std::move(motion)), impulses_(std::move(impulses)) {}
+      : motion_(std::move(motion)), impulses_(std::move(impulses)) {
+    const auto* course = dynamic_cast<const CourseOfTime*>(motion_.get());
+    follows_formula_ = course != nullptr && course->courses() > 0;
+  }
   bool locks() const override { return false; }
   MotionPoint at(double t) const noexcept override {
     MotionPoint sum;
@@ -49,10 +52,13 @@ class Shaped final : public Motion {
     return times;
   }
   double end() const override { return motion_->end() > 0 ? motion_->end() + impulses_.back().delay : 0; }
+  std::size_t courses() const override { return follows_formula_ ? 1 : 0; }
+  void course(double t, std::span<double> values) const noexcept override { values[0] = at(t).acceleration; }
 
  private:
   std::unique_ptr<Motion> motion_;
   Impulses impulses_;  ///< delays do not decrease
+  bool follows_formula_ = false;
 };
 
 /// What leaves a mode of the frequency ω and the damping ratio ζ at rest: half a damped period T/2 = π/(ω √(1 − ζ²))

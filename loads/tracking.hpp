@@ -17,7 +17,7 @@ namespace withy {
 
 /// A load that follows trajectories. Its numbers are, one a coordinate that it follows: `command`, the effort; `error`,
 /// x_r − x; and `margin` where the effort is limited. Of several they have the hinge's name: `error.elbow`.
-class TrackingLoad : public BoundLoad, public LoadNumbers {
+class TrackingLoad : public BoundLoad, public LoadNumbers, public CourseOfTime {
  public:
   /// \param names of the rates along `axes`
   TrackingLoad(const Model& model, const std::vector<RateName>& names, std::vector<FollowedAxis> axes);
@@ -26,6 +26,18 @@ class TrackingLoad : public BoundLoad, public LoadNumbers {
   void show(const LoadView& view, std::span<double> values) const noexcept override;
   std::vector<double> discontinuities() const override { return jumps_of(axes_); }
   double end() const override { return end_of(axes_); }
+  std::size_t courses() const override {
+    std::size_t count = 0;
+    for (const FollowedAxis& axis : axes_) count += courses_of(axis.trajectory);
+    return count;
+  }
+  void course(double t, std::span<double> values) const noexcept override {
+    for (const FollowedAxis& axis : axes_) {
+      const std::size_t count = courses_of(axis.trajectory);
+      course_of(axis.trajectory, t, values.first(count));
+      values = values.subspan(count);
+    }
+  }
 
   /// Sets the effort on each followed coordinate [N m, N]. \param scratch as of `add`
   virtual void commands(double t, std::span<const double> positions, std::span<const double> speeds,

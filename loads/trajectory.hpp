@@ -6,10 +6,12 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/motion.hpp"
 
 namespace withy {
@@ -143,6 +145,23 @@ using Trajectory = std::variant<Hold, Quintic, BangBang, SineMotion, Spline, Plu
 
 inline MotionPoint at(const Trajectory& trajectory, double t) noexcept {
   return std::visit([t](const auto& motion) { return motion(t); }, trajectory);
+}
+
+/// The formula of the time that a trajectory follows; null where it follows none.
+inline const CourseOfTime* course_in(const Trajectory& trajectory) {
+  const auto* plugin = std::get_if<PluginMotion>(&trajectory);
+  return plugin == nullptr ? nullptr : dynamic_cast<const CourseOfTime*>(plugin->motion.get());
+}
+
+/// What follows a trajectory has the courses of that.
+inline std::size_t courses_of(const Trajectory& trajectory) {
+  const CourseOfTime* course = course_in(trajectory);
+  return course == nullptr ? 0 : course->courses();
+}
+/// \param values as many as courses_of says
+inline void course_of(const Trajectory& trajectory, double t, std::span<double> values) noexcept {
+  if (const CourseOfTime* course = course_in(trajectory); course != nullptr && !values.empty())
+    course->course(std::get<PluginMotion>(trajectory).time_scale * t, values);
 }
 
 }  // namespace withy

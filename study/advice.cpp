@@ -30,8 +30,9 @@ RunSummary confirm(Evaluator& evaluator, const Point& choice) {
 
 /// Where events end the run of the scene, its time is over: what comes after has other ranges, which the run never
 /// goes through, and costs what it never does. The time is that in `quadratic`, and one for all models, though each
-/// meets the event at its own: what they are measured against has to last as long as they do. \returns Advice::until
-std::string end_at_stop(Evaluator& evaluator) {
+/// meets the event at its own: what they are measured against has to last as long as they do. \param seconds of CPU
+/// time that are given to it \returns Advice::until
+std::string end_at_stop(Evaluator& evaluator, double seconds) {
   const Prepared& base = evaluator.base();
   const auto stops = [](const RunEvent& event) { return event.stops; };
   if (std::none_of(base.scene.events.begin(), base.scene.events.end(), stops)) return {};
@@ -39,9 +40,18 @@ std::string end_at_stop(Evaluator& evaluator) {
   if (quadratic.refused()) return {};
   const Prepared& model = *quadratic.prepared;
   RunOptions options = run_options(model.scene);
-  options.interrupted = evaluator.control().interrupted;
+  const double until = thread_cpu_seconds() + seconds;
+  options.interrupted = [&] {
+    const auto& interrupted = evaluator.control().interrupted;
+    return (interrupted && interrupted()) || thread_cpu_seconds() > until;
+  };
   const RunSummary run =
       simulate(model.model(), *model.equations, *base.scene.integrator, model.scene.initial, options, {});
+  if (run.status == RunStatus::interrupted)
+    return fmt::format(
+        "a run up to an event that ends it was cut at {:.4g} s, for it had taken {:.2g} s of CPU time: everything is "
+        "measured as if no event ended the run",
+        run.reached, seconds);
   if (!run.ended_by_event || !(run.reached > model.scene.initial.time)) return {};
   evaluator.end_at(run.reached);
   return fmt::format("event '{}' ends the run at {:.4g} s, and everything is measured up to there",
@@ -122,7 +132,8 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   accuracy.require_something_of(evaluator.outputs());
   require_a_run(scene);
   Advice advice;
-  advice.until = end_at_stop(evaluator);
+  constexpr double given = 10, share = 0.25;  // of the time that is asked for
+  advice.until = end_at_stop(evaluator, seconds ? share * *seconds : given);
   if (finding && !advice.until.empty()) finding(advice.until);
   advice.limit_seconds = seconds ? *seconds : time_limit(evaluator);
   evaluator.limit(search_share * advice.limit_seconds);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 namespace withy::study {
 namespace {
@@ -35,27 +36,47 @@ int turns(const Eigen::VectorXd& numbers) {
   return count;
 }
 
-/// The period [s] of what goes to and fro fastest in samples this far apart [s]; 0 where nothing does.
-double period_in(const Course& course, double start, double apart) {
-  constexpr int enough = 16;  // eight periods, so that one more or less is an eighth
+constexpr int enough = 16;  ///< turns: eight periods, so that one more or less is an eighth
+
+/// A row a sample, this far apart [s].
+Eigen::MatrixXd sampled(const Course& course, double start, double apart) {
   Eigen::MatrixXd numbers;
   for (Eigen::Index k = 0; k < samples; ++k) {
     const Eigen::VectorXd row = course(start + static_cast<double>(k) * apart);
     if (k == 0) numbers.resize(samples, row.size());
     numbers.row(k) = row.transpose();
   }
+  return numbers;
+}
+
+/// The period [s] of what goes to and fro fastest in samples this far apart [s]; 0 where nothing does.
+double period_in(const Course& course, double start, double apart) {
+  const Eigen::MatrixXd numbers = sampled(course, start, apart);
   if (numbers.size() == 0 || !numbers.allFinite()) return 0;
   int most = 0;
   for (const auto& column : numbers.colwise()) most = std::max(most, turns(column));
   return most < enough ? 0 : 2 * static_cast<double>(samples - 1) * apart / most;
 }
 
+/// Zero in the place of numbers that go to and fro in samples so close that nothing does: what is no more than
+/// rounding, as the effort on a hinge of a torque across its axis, does so at every distance.
+Course without_rounding(Course course, double start, double too_close) {
+  const Eigen::MatrixXd numbers = sampled(course, start, too_close);
+  Eigen::VectorXd kept = Eigen::VectorXd::Ones(numbers.cols());
+  for (Eigen::Index c = 0; c < numbers.cols(); ++c)
+    if (numbers.col(c).allFinite() && turns(numbers.col(c)) >= enough) kept[c] = 0;
+  if ((kept.array() == 1).all()) return course;
+  return [course = std::move(course), kept = std::move(kept)](double t) {
+    return Eigen::VectorXd(course(t).cwiseProduct(kept));
+  };
+}
+
 /// From the closest samples on: those further apart than half of a period tell a longer one.
 struct Found {
   double period = 0, apart = 0;  ///< [s]
 };
+constexpr int octaves = 20;
 Found fastest_period(const Course& course, double start, double longest) {
-  constexpr int octaves = 20;
   for (int k = -octaves; k <= 0; ++k) {
     const double apart = std::ldexp(longest, k) / 8;
     if (apart < 64 * std::numeric_limits<double>::epsilon() * std::abs(start)) continue;
@@ -96,18 +117,21 @@ FastCourse told(bool of_motion, const std::string& name, double period, const Do
 /// The first motion, else load, that goes to and fro in about `longest` [s] or less.
 std::optional<FastCourse> swinging(const Prepared& prepared, const State& state, double longest, const Rest& rest) {
   const Model& model = prepared.model();
+  const double too_close =
+      std::max(std::ldexp(longest, -octaves) / 128, 4 * std::numeric_limits<double>::epsilon() * std::abs(state.time));
+  const auto quiet = [&](Course course) { return without_rounding(std::move(course), state.time, too_close); };
   for (const MotionNode& node : model.motions())
     if (!node.motion->locks())
-      if (const Found f = fastest_period(accelerations_of(*node.motion), state.time, longest); f.period > 0)
+      if (const Found f = fastest_period(quiet(accelerations_of(*node.motion)), state.time, longest); f.period > 0)
         return told(true, node.name, f.period, swings_to_and_fro, rest);
   if (model.loads().empty()) return {};
   Work work = prepared.equations->make_work();
   const Found of_all =
-      fastest_period(efforts_of(prepared, state, EquationsOfMotion::all_loads, work), state.time, longest);
+      fastest_period(quiet(efforts_of(prepared, state, EquationsOfMotion::all_loads, work)), state.time, longest);
   if (!(of_all.period > 0)) return {};
   for (std::size_t l = 0; l < model.loads().size(); ++l)
     if (const double period =
-            period_in(efforts_of(prepared, state, static_cast<int>(l), work), state.time, of_all.apart);
+            period_in(quiet(efforts_of(prepared, state, static_cast<int>(l), work)), state.time, of_all.apart);
         period > 0)
       return told(false, model.loads()[l].name, period, swings_to_and_fro, rest);
   return {};

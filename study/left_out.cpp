@@ -1,6 +1,9 @@
 #include "withy/study/left_out.hpp"
 
+#include <algorithm>
+
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/rod.hpp"
 
 namespace withy::study {
 namespace {
@@ -32,11 +35,22 @@ std::string left_out(const Terms& terms) {
   return "extension along beams and shear";
 }
 
+/// Whether beams of the model have extension or shear.
+bool stretch(const Model& model) {
+  return std::any_of(model.bodies().begin(), model.bodies().end(), [](const BodyNode& node) {
+    const Rod* rod = node.body->rod();
+    return rod != nullptr && rod->section(rod->length()).elongation.cols() > 0;
+  });
+}
+
 }  // namespace
 
 std::string left_out(const ModelAt& model) {
   if (!flexible(model.prepared->model())) return "nothing: no body is flexible";
-  std::string text = left_out(model.prepared->scene.formulation->terms());
+  const Model& tree = model.prepared->model();
+  const Terms& terms = model.prepared->scene.formulation->terms();
+  std::string text = left_out(terms);
+  if (terms.strain == StrainOrder::exact && stretch(tree)) text = "nothing but what its strains leave out";
   std::string bodies;
   for (const auto& own : model.point.bodies) bodies += (bodies.empty() ? "; of " : ", ") + own.first;
   if (bodies.empty()) return text;

@@ -121,6 +121,13 @@ const char* const shorter_steps =
     " What to do: take shorter steps (a smaller 'step', or 'rtol' or 'max_step' of an integrator that controls its "
     "error), or one that no vibration limits, as radau.";
 
+/// Whether all bodies with modes have exact kinematics.
+bool can_be_exact(const Model& model) {
+  return std::all_of(model.bodies().begin(), model.bodies().end(), [](const BodyNode& node) {
+    return node.body->shape().modes() == 0 || node.body->rod() != nullptr;
+  });
+}
+
 /// Where bodies were bent beyond what kinematics of second order is good for, which grows by what it leaves out; empty
 /// where they were not.
 std::string bent_remedy(const Prepared& prepared, const RunSummary& summary) {
@@ -128,6 +135,12 @@ std::string bent_remedy(const Prepared& prepared, const RunSummary& summary) {
   double most = 0;
   for (const auto& [body, ratio] : summary.peak_deflection_ratio) most = std::max(most, ratio);
   if (!(most > small) || prepared.scene.formulation->terms().strain == StrainOrder::exact) return {};
+  if (!can_be_exact(prepared.model()))
+    return fmt::format(
+        " What to do: bodies were bent by {:.2g} of their length, and beyond a tenth no formulation holds but exact, "
+        "which a body here does not offer: write what is slender as a beam whose modes are clamped at its root, or "
+        "keep bodies from bending so far, by stiffness or by smaller loads.",
+        most);
   return fmt::format(
       " What to do: run it with --formulation exact, which no deflection limits: bodies were bent by {:.2g} of their "
       "length, and beyond a tenth no other formulation holds. If that ends the same way the motion itself grows, or "
@@ -187,8 +200,9 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
       return fmt::format(" What to do: let min_step be smaller: it is {:g} s, and time could be told apart farther.",
                          least->number());
   if (bends && leaves_something_out(terms))
-    return " What to do: run it with --formulation quadratic, which leaves out less, or exact where bodies bend by "
-           "more than a tenth of their length; if that ends the same way it is the model and not the formulation.";
+    return std::string(" What to do: run it with --formulation quadratic, which leaves out less") +
+           (can_be_exact(prepared.model()) ? ", or exact where bodies bend by more than a tenth of their length" : "") +
+           "; if that ends the same way it is the model and not the formulation.";
   if (summary.status == RunStatus::diverged && bends)
     if (std::string text = bent_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::singular)
@@ -201,7 +215,9 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   return std::string(
              " What to do: run it with a tenth of 'rtol' or of the step. If it ends at the same time the motion "
              "itself grows: look at the scene's loads, gains and stiffness (withy check") +
-         (bends && terms.strain != StrainOrder::exact ? "; --formulation exact for large deflections)." : ").");
+         (bends && terms.strain != StrainOrder::exact && can_be_exact(prepared.model())
+              ? "; --formulation exact for large deflections)."
+              : ").");
 }
 
 }  // namespace withy::study

@@ -19,7 +19,6 @@ namespace {
 /// Of one configuration of the model.
 std::unique_ptr<EquationsOfMotion> compile_configuration(std::shared_ptr<const Model> model, Terms terms) {
   model = Model::in_kinematics(std::move(model), terms);
-  ReferenceDynamics::check(*model, terms);
   PlacedTree tree = compile_placed_tree(*model);
   std::vector<Terms> node_terms;
   // A body of each truncation, none where there is none.

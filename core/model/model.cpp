@@ -236,7 +236,23 @@ State Model::reference_state() const {
   return s;
 }
 
+bool Model::is_exact(std::size_t body, const Terms& scene) const {
+  const BodyNode& node = bodies_[body];
+  const Terms own = node.terms.value_or(scene);
+  return node.body->shape().modes() > 0 && own.strain == StrainOrder::exact && own.truncation == Truncation::none;
+}
+
+void Model::require_rods(const Terms& scene) const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (is_exact(b, scene) && bodies_[b].body->rod() == nullptr)
+      throw std::invalid_argument("body '" + bodies_[b].name +
+                                  "' has no exact kinematics: a beam offers it whose modes are clamped at its root; "
+                                  "give it a formulation of its own");
+}
+
 std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> model, const Terms& scene) {
+  // Before loads are bound anew, which look for the rods.
+  model->require_rods(scene);
   std::shared_ptr<Model> changed;
   std::map<std::pair<const Body*, const StrainKinematics*>, std::shared_ptr<const Body>> made;  // equal bodies are one
   for (std::size_t b = 0; b < model->bodies_.size(); ++b) {

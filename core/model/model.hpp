@@ -139,8 +139,13 @@ class Model {
   /// The same tree with every body rigid in its undeformed shape, without loads and motions.
   [[nodiscard]] Model rigidified() const;
 
+  /// Whether the modes of a body are those of exact kinematics, which is that of equations without truncation; `scene`:
+  /// of the bodies that have no terms of their own.
+  [[nodiscard]] bool is_exact(std::size_t body, const Terms& scene) const;
+  /// \throws std::invalid_argument where a body is to be exact that offers no rod.
+  void require_rods(const Terms& scene) const;
   /// The same tree with the bodies in the strain kinematics that their terms name, `scene` where they have none.
-  /// \throws std::invalid_argument where a body cannot be; the text names it and the kinematics.
+  /// \throws std::invalid_argument where a body cannot be; the text names it and the kinematics. As require_rods.
   [[nodiscard]] static std::shared_ptr<const Model> in_kinematics(std::shared_ptr<const Model> model,
                                                                   const Terms& scene);
 

@@ -19,13 +19,6 @@ using reference::WorldMotion;
 /// a + εb with ε² = 0.
 using Dual = DualNumber<double, 1>;
 
-/// Whether the modes of a body are those of exact kinematics, which is that of equations without truncation.
-bool is_exact(const Model& model, std::size_t body, Terms terms) {
-  const BodyNode& node = model.bodies()[body];
-  const Terms own = node.terms.value_or(terms);
-  return node.body->shape().modes() > 0 && own.strain == StrainOrder::exact && own.truncation == Truncation::none;
-}
-
 /// M u̇ = f + applied, before stiffness and damping of bodies.
 struct Assembled {
   Eigen::MatrixXd M;
@@ -108,22 +101,11 @@ std::vector<PrescribedRate> prescribed_at(const Model& model, double t, std::spa
 
 ReferenceDynamics::ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms)
     : model_(std::move(model)), terms_(terms) {
-  check(*model_, terms);
+  model_->require_rods(terms);
   for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
     slots_.push_back(model_->layout().modes(b));
     rods_.emplace_back();
-    if (is_exact(*model_, b, terms)) rods_.back() = std::make_shared<const RodTable>(*model_->bodies()[b].body->rod());
-  }
-}
-
-void ReferenceDynamics::check(const Model& model, Terms terms) {
-  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const BodyNode& node = model.bodies()[b];
-    if (is_exact(model, b, terms) && node.body->rod() == nullptr)
-      throw std::invalid_argument("body '" + node.name +
-                                  "' has no exact kinematics: a beam offers it whose modes are clamped at its root; "
-                                  "give it a formulation of its "
-                                  "own");
+    if (model_->is_exact(b, terms)) rods_.back() = std::make_shared<const RodTable>(*model_->bodies()[b].body->rod());
   }
 }
 

@@ -25,10 +25,8 @@ class ReferenceTree;
 class ReferenceDynamics {
  public:
   /// `terms` hold for every body that has none of its own.
-  /// \throws std::invalid_argument as `check`.
+  /// \throws std::invalid_argument as Model::require_rods.
   ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms);
-  /// \throws std::invalid_argument where a body's kinematics is to be exact and it offers none; the text names it.
-  static void check(const Model& model, Terms terms);
 
   /// M and f of M u̇ = f (theory (3) for the strict truncation), and the loads' efforts at t.
   [[nodiscard]] DenseSystem system(double t, std::span<const double> y) const;

@@ -1,7 +1,6 @@
 #include "withy/core/simulation/step_parts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -29,21 +28,9 @@ StepParts::StepParts(const Model& model, double start, double end) : longest_((e
   }
 }
 
-void StepParts::leave_out(std::span<const double> y,
-                          const std::function<bool(std::span<const double>, std::span<const double>)>& same) {
-  std::vector<double> turned(y.begin(), y.end());
+void StepParts::leave_out(const std::function<bool(std::size_t)>& matters) {
   std::erase_if(turning_, [&](const Turning& t) {
-    if (t.coordinate < 0) return false;
-    double& angle = turned[static_cast<std::size_t>(t.coordinate)];
-    const double was = angle;
-    // Angles that no symmetry repeats.
-    constexpr std::array<double, 3> angles = {0.7, 2.2, 4.1};
-    const bool left_out = std::all_of(angles.begin(), angles.end(), [&](double by) {
-      angle = was + by;
-      return same(y, turned);
-    });
-    angle = was;
-    return left_out;
+    return t.coordinate >= 0 && !matters(static_cast<std::size_t>(t.coordinate));
   });
 }
 

@@ -19,10 +19,9 @@ class StepParts {
  public:
   /// \param start, end of the run [s]; an infinite end: of unknown length
   StepParts(const Model& model, double start, double end);
-  /// Leaves out what turns a coordinate that nothing watched depends on, as a reaction wheel beside a relay on the
-  /// hull: where `same` is true of a state's y and of it turned by that coordinate alone.
-  void leave_out(std::span<const double> y,
-                 const std::function<bool(std::span<const double>, std::span<const double>)>& same);
+  /// Leaves out what turns a coordinate, an element of y, that nothing watched depends on, as a reaction wheel beside a
+  /// relay on the hull: where `matters` is false of it.
+  void leave_out(const std::function<bool(std::size_t coordinate)>& matters);
   /// \param length of the step [s]
   /// \param before, after the states y at its ends
   [[nodiscard]] std::size_t operator()(double length, std::span<const double> before,

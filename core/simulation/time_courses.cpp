@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -13,8 +14,9 @@ namespace withy {
 namespace {
 
 constexpr double any = std::numeric_limits<double>::infinity();
-/// A change within an interval that is less of the size of a course is rounding.
-constexpr double rounding = 1e-9;
+/// A change within an interval that is less of the size of a course is rounding; of the changes of a course from
+/// interval to interval what is less of the size of the course itself.
+constexpr double rounding = 1e-9, rounding_of_changes = 1e-11;
 /// How many times its scale a change is announced ahead of itself, and how many it takes until steps have seen it: they
 /// are as long as their errors allow from then on.
 constexpr double ahead = 4, seen = 16;
@@ -32,15 +34,19 @@ std::vector<const CourseOfTime*> courses_of(const Model& model) {
   return all;
 }
 
-/// For each interval of a course, given at their ends, how many intervals it takes there to go through the range of
-/// what it does between two rests; infinite where it rests.
-void add_scales(std::span<const double> values, std::span<double> scales) {
+double size_of(std::span<const double> values) {
   double size = 0;
   for (const double x : values)
     if (std::isfinite(x)) size = std::max(size, std::abs(x));
+  return size;
+}
+
+/// For each interval of a course, given at their ends, how many intervals it takes there to go through the range of
+/// what it does between two rests; infinite where it rests, its change being no more than `least_change`.
+void add_scales(std::span<const double> values, double least_change, std::span<double> scales) {
   const auto change = [&](std::size_t k) {
     const double d = std::abs(values[k + 1] - values[k]);
-    return std::isfinite(d) && d > rounding * size ? d : 0.0;
+    return std::isfinite(d) && d > least_change ? d : 0.0;
   };
   for (std::size_t k = 0; k < scales.size();) {
     if (change(k) == 0) {
@@ -110,7 +116,13 @@ TimeCourses::TimeCourses(const Model& model, double start, double end) : start_(
         course->course(start + static_cast<double>(k) * interval_, row);
         values[k] = row[c];
       }
-      add_scales(values, scales);
+      const double size = size_of(values);
+      add_scales(values, rounding * size, scales);
+      // What goes on changing never rests: what it does beside that is seen in its changes.
+      std::adjacent_difference(values.begin(), values.end(), values.begin());
+      const std::span<const double> changes = std::span(values).subspan(1);
+      add_scales(changes, std::max(rounding * size_of(changes), rounding_of_changes * size),
+                 std::span(scales).first(intervals - 1));
     }
   }
   longest_ = announced(scales);

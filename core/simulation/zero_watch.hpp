@@ -69,6 +69,7 @@ class ZeroWatch {
 
  private:
   void evaluate(double t, std::span<const double> y, std::span<double> values) const;
+  void leave_out_what_does_not_matter(const State& start, double end);
   /// Functions at a time within the last step.
   struct Row {
     double time = 0;

@@ -58,10 +58,7 @@ TangentDynamics::TangentDynamics(std::shared_ptr<const Model> model, Terms terms
     const Terms own = terms_.back();
     strict_ = strict_ || own.truncation == Truncation::strict;
     symmetric_ = symmetric_ || own.truncation == Truncation::symmetric;
-    if (own.strain != StrainOrder::exact || own.truncation != Truncation::none) continue;
-    const Rod* rod = body.body->rod();
-    if (rod == nullptr) throw std::invalid_argument("body '" + body.name + "' has no exact kinematics");
-    rods_.back() = std::make_shared<const RodTable>(*rod);
+    if (model_->is_exact(b, terms)) rods_.back() = std::make_shared<const RodTable>(*body.body->rod());
   }
   for (const LoadNode& node : model_->loads())
     controlled_frames_ = controlled_frames_ || (node.continuous != nullptr && !node.load->frames().empty());

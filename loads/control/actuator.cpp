@@ -72,7 +72,7 @@ struct Motor {
   double limit = std::numeric_limits<double>::infinity();
 };
 
-class DcMotor final : public ControlBlock {
+class DcMotor final : public ControlBlock, public CourseOfTime {
  public:
   /// \param voltage where none is measured
   DcMotor(const Motor& motor, std::optional<Trajectory> voltage) : motor_(motor), voltage_(std::move(voltage)) {}
@@ -118,6 +118,8 @@ class DcMotor final : public ControlBlock {
     s.rate_by_state(0, 0) = -motor_.resistance / motor_.inductance;
     return true;
   }
+  std::size_t courses() const override { return voltage_ ? courses_of(*voltage_) : 0; }
+  void course(double t, std::span<double> values) const noexcept override { course_of(*voltage_, t, values); }
   std::vector<double> discontinuities() const override {
     return voltage_ ? jumps_of(*voltage_) : std::vector<double>{};
   }

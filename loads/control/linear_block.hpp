@@ -19,7 +19,7 @@ struct StateSpace {
 
 /// A linear system of what is measured, or of what it lacks to a reference. By the clock it is the exact solution for
 /// inputs held over a sample.
-class LinearBlock final : public ControlBlock {
+class LinearBlock final : public ControlBlock, public CourseOfTime {
  public:
   enum class Start {
     zero,
@@ -50,6 +50,8 @@ class LinearBlock final : public ControlBlock {
   void advance(double t, std::span<const double> w, std::span<double> z) const noexcept override;
   bool slopes(double t, std::span<const double> w, std::span<const double> z, Slopes& slopes) const override;
   std::vector<double> discontinuities() const override;
+  std::size_t courses() const override { return reference_ ? courses_of(*reference_) : 0; }
+  void course(double t, std::span<double> values) const noexcept override { course_of(*reference_, t, values); }
   double end() const override;
 
  private:

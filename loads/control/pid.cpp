@@ -49,7 +49,7 @@ struct PidGains {
   double tracking = 0;  ///< T_t [s]
 };
 
-class Pid final : public ControlBlock {
+class Pid final : public ControlBlock, public CourseOfTime {
  public:
   Pid(const PidGains& gains, Trajectory reference) : k_(gains), reference_(std::move(reference)) {}
 
@@ -132,6 +132,8 @@ class Pid final : public ControlBlock {
     return true;
   }
   std::vector<double> discontinuities() const override { return jumps_of(reference_); }
+  std::size_t courses() const override { return courses_of(reference_); }
+  void course(double t, std::span<double> values) const noexcept override { course_of(reference_, t, values); }
   double end() const override { return end_of(reference_); }
   [[nodiscard]] bool measures_rate() const { return k_.derivative.greatest() > 0 && k_.filter == 0; }
 
