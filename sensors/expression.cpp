@@ -21,7 +21,7 @@ class BoundExpression final : public BoundSensor, public CourseOfTime {
  public:
   /// `places`: of the formula's names among the numbers before it; `time_place` for the time.
   BoundExpression(Formula formula, std::string unit, std::vector<std::size_t> places)
-      : formula_(std::move(formula)), unit_(std::move(unit)), places_(std::move(places)) {}
+      : formula_(std::move(formula)), course_(formula_), unit_(std::move(unit)), places_(std::move(places)) {}
   static constexpr std::size_t time_place = static_cast<std::size_t>(-1);
 
   std::vector<SensorColumn> columns() const override { return {{"", unit_}}; }
@@ -31,11 +31,12 @@ class BoundExpression final : public BoundSensor, public CourseOfTime {
       named[i] = places_[i] == time_place ? state.time() : inputs.before[places_[i]];
     values[0] = formula_(named);
   }
-  std::size_t courses() const override { return courses_of(formula_); }
-  void course(double t, std::span<double> values) const noexcept override { course_of(formula_, t, values); }
+  std::size_t courses() const override { return course_.count(); }
+  void course(double t, std::span<double> values) const noexcept override { course_.set(t, values); }
 
  private:
   Formula formula_;
+  FormulaCourse course_;
   std::string unit_;
   std::vector<std::size_t> places_;
 };

@@ -244,6 +244,46 @@ class FormulaReader {
 
 Formula::Formula(std::string_view text) { FormulaReader(text, *this).read(); }
 
+std::vector<Formula> Formula::parts_of(std::string_view name) const {
+  // Steps from `first` on to where the part stands on the stack; `named`, `other`: it has that name, another.
+  struct Part {
+    std::size_t first, end;
+    bool named, other;
+  };
+  std::vector<Formula> parts;
+  const auto keep = [&](const Part& part) {
+    if (!part.named || part.other) return;
+    Formula own;
+    own.steps_.assign(steps_.begin() + static_cast<std::ptrdiff_t>(part.first),
+                      steps_.begin() + static_cast<std::ptrdiff_t>(part.end));
+    for (Step& step : own.steps_)
+      if (step.operation == Operation::name) step.index = 0;
+    own.names_ = {std::string(name)};
+    parts.push_back(std::move(own));
+  };
+  std::vector<Part> stack;
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const Step& step = steps_[i];
+    const std::size_t operands = step.operation == Operation::function                                      ? step.count
+                                 : step.operation == Operation::number || step.operation == Operation::name ? 0
+                                 : step.operation == Operation::negate                                      ? 1
+                                                                                                            : 2;
+    Part whole{i, i + 1, false, false};
+    if (step.operation == Operation::name) (names_[step.index] == name ? whole.named : whole.other) = true;
+    const std::span<const Part> of(stack.end() - static_cast<std::ptrdiff_t>(operands), stack.end());
+    for (const Part& part : of) {
+      whole.first = std::min(whole.first, part.first);
+      whole.named |= part.named, whole.other |= part.other;
+    }
+    // What has another name beside it grows no further.
+    if (whole.other) std::for_each(of.begin(), of.end(), keep);
+    stack.resize(stack.size() - operands);
+    stack.push_back(whole);
+  }
+  keep(stack.back());
+  return parts;
+}
+
 double Formula::operator()(std::span<const double> values) const noexcept {
   std::array<double, most_pending + 1> stack{};
   std::size_t size = 0;

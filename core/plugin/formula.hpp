@@ -25,11 +25,16 @@ class Formula {
   /// The value of a formula of at most one name at x, with its first and second derivative by it, exact; of abs,
   /// min and max those of one side at a kink, of sqrt and norm none (not a number) at zero.
   [[nodiscard]] std::array<double, 3> with_derivatives(double x) const noexcept;
+  /// The greatest parts of the formula that have this name and no other: of "max(0, x) * exp(-t ^ 2) + t" by "t" those
+  /// are "exp(-t ^ 2)" and "t". Of a formula that has no other name it is the formula.
+  [[nodiscard]] std::vector<Formula> parts_of(std::string_view name) const;
 
   static constexpr std::size_t most_pending = 64;  ///< numbers that wait for an operation
   static constexpr std::size_t most_names = 64;
 
  private:
+  Formula() = default;
+
   friend class FormulaReader;
   enum class Operation { number, name, negate, add, subtract, multiply, divide, power, function };
   struct Step {

@@ -15,7 +15,7 @@ namespace {
 
 class FormulaBlock final : public ControlBlock, public CourseOfTime {
  public:
-  explicit FormulaBlock(Formula formula) : formula_(std::move(formula)) {
+  explicit FormulaBlock(Formula formula) : formula_(std::move(formula)), course_(formula_) {
     for (const std::string& name : formula_.names())
       if (name != "t") signals_.push_back(name);
   }
@@ -28,11 +28,12 @@ class FormulaBlock final : public ControlBlock, public CourseOfTime {
     for (std::size_t i = 0; i < formula_.names().size(); ++i) named[i] = formula_.names()[i] == "t" ? t : w[next++];
     v[0] = formula_(named);
   }
-  std::size_t courses() const override { return courses_of(formula_); }
-  void course(double t, std::span<double> values) const noexcept override { course_of(formula_, t, values); }
+  std::size_t courses() const override { return course_.count(); }
+  void course(double t, std::span<double> values) const noexcept override { course_.set(t, values); }
 
  private:
   Formula formula_;
+  FormulaCourse course_;
   std::vector<std::string> signals_;
 };
 

@@ -245,6 +245,23 @@ TEST(LongSteps, SeeAPulseBesideWhatGoesOnChanging) {
   }
 }
 
+// x is 50 m at the pulse: what a threshold of a signal lets through of it. Its impulse is √π w ∫(x − 10) of 40 N s, to
+// the motion within the pulse.
+TEST(LongSteps, SeeAPulseBehindAThresholdOfASignal) {
+  const auto end = [](const std::string& integrator) {
+    test::LoadedScene s("format: withy/1\ntime: {end: 100, output: 100}\nintegrator: " + integrator +
+                        "\nbodies: {block: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+                        "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}\n"
+                        "initial: {hinges: {slide: {rate: [1]}}}\n"
+                        "loads: {f: {type: expression, hinge: slide, value: "
+                        "\"max(0, slide - 10)*exp(-((t-50.3)/0.15)^2)\"}}\n");
+    return s.rate(s.run().back(), "slide");
+  };
+  const double closely = end("{name: dopri5, rtol: 1e-9, max_step: 0.05}");
+  EXPECT_GT(closely, 10);
+  EXPECT_NEAR(end("{name: dopri5, rtol: 1e-9}"), closely, 1e-6 * closely);
+}
+
 // What controllers are to follow is a formula of the time too, and so is a shaped motion of one: the wheel swings about
 // the reference as one that was looked at closely.
 TEST(LongSteps, SeeAPulseInAFormulaThatIsFollowed) {
