@@ -33,11 +33,23 @@ class Reader {
     add("shear_y", Vector3::UnitY(), elongation, "", material);
     add("shear_z", Vector3::UnitZ(), elongation, "", material);
     if (p_.has("twist")) material.twist = twist();
+    remark_on_sections_without_inertia(material);
     if (!good_) return nullptr;
     return make_beam_body(material, std::move(strains_));
   }
 
  private:
+  void remark_on_sections_without_inertia(BeamMaterial& material) const {
+    for (const auto& [shear, bending] : {std::pair("shear_y", "bending_y"), std::pair("shear_z", "bending_z")}) {
+      if (!p_.has(shear) || p_.at(shear).count_at("modes") == 0) continue;
+      if (p_.has(bending) && p_.at(bending).has("rotary_inertia")) continue;
+      material.remarks.push_back(
+          fmt::format("{} without a rotary_inertia in {}: sections turn without inertia, so that a turn of the root "
+                      "that shear undoes "
+                      "moves no mass, and a hinge that turns there may move next to none",
+                      shear, bending));
+    }
+  }
   /// Of no use after a reported error.
   Profile profile(const Value& value) {
     const auto read = Profile::read(value, p_.number_at("length"), context_.diagnostics);

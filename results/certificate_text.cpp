@@ -111,7 +111,7 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model, double
   if (!e.at_most.empty())
     out += fmt::format("; roughly at most that of {}, too little for coarse runs to tell", fmt::join(e.at_most, ", "));
   if (e.distances.until < e.end)
-    out += fmt::format("; up to {:.4g} s, where the estimate's budget ended", e.distances.until);
+    out += fmt::format("; up to {:.4g} s, to which the runs compared came", e.distances.until);
   else if (e.end < reached)
     out += fmt::format("; up to {:.4g} s, the last state that can be trusted", e.end);
   return out;

@@ -8,6 +8,7 @@
 
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/run_times.hpp"
 #include "withy/study/advice_search.hpp"
 #include "withy/study/advice_yardstick.hpp"
 #include "withy/study/input_error.hpp"

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "withy/scene/scene.hpp"
+#include "withy/study/held_places.hpp"
 #include "withy/study/pace.hpp"
 #include "withy/study/third_order.hpp"
+#include "withy/study/tip_moments.hpp"
 
 namespace withy::study {
 namespace {
@@ -231,21 +233,37 @@ void YardstickSearch::explain(const ReferenceFound& found) {
   if (!found.trouble.empty())
     advice_.trouble +=
         (found.unaffordable ? ". A finer one costs too much: " : ". There is no finer one: ") + found.trouble;
+  // With functions that cannot bend as the body is held the models converge like 1/n.
+  std::vector<Remark> remarks;
+  look_at_held_places(evaluator_.base(), evaluator_.registry(), remarks);
+  look_at_tip_moments(evaluator_.base(), evaluator_.registry(), remarks);
+  for (const Remark& remark : remarks) advice_.trouble += fmt::format(". {}: {}", remark.place.path, remark.text);
+}
+
+/// Beams that `exact` does not take, for their modes move the root: "'b', 'c'"; empty where there are none.
+std::string beams_that_move_their_root(const Model& model) {
+  std::string names;
+  for (const BodyNode& node : model.bodies())
+    if (node.body->shape().modes() > 0 && !node.segment && node.body->cut(0) && node.body->rod() == nullptr)
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", node.name);
+  return names;
 }
 
 /// Why what is offered is no truth for a body that bends so far.
 void YardstickSearch::explain_bending(const Reference& r) {
   const double use = r.third_order / accuracy_.share.value_or(policy::no_accuracy) / policy::last_reference_use;
   const bool askable = use * accuracy_.share.value_or(0) < policy::no_accuracy;
+  const std::string moving = beams_that_move_their_root(evaluator_.base().model());
   advice_.trouble = fmt::format(
       "no reference is exact enough to measure against: {} are beyond what {} is "
       "good for: over a run that may come to {:.2g} % of the range of deflections, and no kinematics is offered that "
-      "is "
-      "better. What to do: "
-      "{}make the "
-      "body a beam, which has 'exact', or one in segments; or ask for a shorter time (--set time.end=...)",
+      "is better. What to do: {}{}, or make the body one in segments; or ask for a shorter time (--set time.end=...)",
       bend_text(r.bend), r.point.formulation, 100 * r.third_order,
-      accuracy_.share && askable ? fmt::format("ask for --accuracy {}; ", accuracy_.times(use).option()) : "");
+      accuracy_.share && askable ? fmt::format("ask for --accuracy {}; ", accuracy_.times(use).option()) : "",
+      moving.empty() ? "make the body a beam, which has 'exact'"
+                     : fmt::format("give the beams whose modes move their root ({}) a family that does not, as "
+                                   "orthogonal-polynomials, with which they have 'exact'",
+                                   moving));
 }
 
 /// How far the truth is known by now, where that is better than what was told before.

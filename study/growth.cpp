@@ -16,6 +16,7 @@
 #include "withy/core/plugin/measured_place.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/felt_motion.hpp"
+#include "withy/core/simulation/loop_following.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 
 namespace withy::study {
@@ -124,10 +125,13 @@ std::string physical_cause(const Prepared& prepared, const RunSummary& summary) 
   text += emptied_hinges(prepared, state);
   FeltMotion felt(model, equations);
   felt.update(state, motion.bodies());
+  LoopFollowing loops(model, equations);
+  loops.update(state.y);
   for (const BodyValidity& b : summary.validity.bodies) {
     const auto index = static_cast<std::size_t>(model.body(b.name));
     const double rate = b.fundamental > 0 ? motion.bodies()[index].rate.norm() / b.fundamental : 0;
-    const double buckling = -MotionStiffness(model, index).evaluate(felt.bodies(), felt.at_frames()).least;
+    const double buckling =
+        -MotionStiffness(model, index).evaluate(felt.bodies(), felt.at_frames(), loops.of(index)).least;
     if (rate >= 1)
       text += fmt::format(" There '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s{}.", b.name,
                           rate, b.fundamental,

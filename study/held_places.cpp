@@ -60,7 +60,7 @@ std::string of_held_strains(const Scene& scene, const BodyModes& modes, const Bo
 }
 
 /// A beam's sections are one with its root, but functions that are made for a clamped root and a free tip have no
-/// moment where it is held instead.
+/// moment where it is held instead, and those that are made for a pinned or a free root none at a clamped one.
 std::string of_beam(const Prepared& prepared, std::size_t b, Registry& registry) {
   const Model& model = prepared.model();
   const BodyNode& node = model.bodies()[b];
@@ -82,9 +82,12 @@ void look_at_held_places(const Prepared& prepared, Registry& registry, std::vect
     if (node.body->shape().modes() == 0) continue;
     const Frame& held = node.frames[static_cast<std::size_t>(hinge.child_frame)];
     const PointExpansion root = *node.body->station(std::string("root"));
-    if (held.section.X == root.X || (held.section.phi.isZero(0) && held.section.psi.isZero(0))) continue;
-    const std::string begin = fmt::format("holds '{}' at '{}', where its modes move", node.name, held.name);
+    const bool at_root = held.section.X == root.X;
+    if (held.section.phi.isZero(0) && held.section.psi.isZero(0)) continue;
+    const std::string begin =
+        fmt::format("holds '{}' at '{}', where its modes {}", node.name, held.name, at_root ? "turn it" : "move");
     if (!node.body->cut(0)) {
+      if (at_root) continue;
       all.push_back({place_in_scene(prepared.scene, "hinges", hinge.name),
                      begin + "; they are those of the body held at its root and leave all that is clamped there "
                              "undeformed: hold it at its root"});
@@ -94,7 +97,8 @@ void look_at_held_places(const Prepared& prepared, Registry& registry, std::vect
     if (strains.empty()) continue;
     all.push_back({place_in_scene(prepared.scene, "hinges", hinge.name),
                    begin + ", and they bend badly when it is clamped there: " + strains +
-                       "; choose these, or hold it at its root"});
+                       (at_root ? "; choose these, or a hinge that lets it turn, if that is meant"
+                                : "; choose these, or hold it at its root")});
   }
 }
 

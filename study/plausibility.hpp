@@ -20,10 +20,10 @@ Place place_in_scene(const Scene& scene, const char* group, const std::string& n
 
 /// In the order of the file: what bodies remark on (damping ratios above 1, strains without modes, what data lack);
 /// flexible bodies far shorter than the rest, that carry far more than their own mass, or something with functions that
-/// have no moment where it hangs or where they are held, or that vary along themselves and have functions of an even
-/// beam; servos that drive next to no inertia; motions too fast for the integrator chosen, loads and motions that its
-/// steps do not follow; frames and bodies without a use; angles in radians that look like degrees. \throws PluginError
-/// where a library that functions are made by is refused.
+/// have no moment where it hangs or where they are held, at their root too, or that vary along themselves and have
+/// functions of an even beam; servos that drive next to no inertia; motions too fast for the integrator chosen, loads
+/// and motions that its steps do not follow; frames and bodies without a use; angles in radians that look like degrees.
+/// \throws PluginError where a library that functions are made by is refused.
 std::vector<Remark> implausible(const Prepared& prepared, Registry& registry);
 
 }  // namespace withy::study

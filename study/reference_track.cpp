@@ -213,14 +213,22 @@ ReferenceTrack ReferenceTracker::beside_least() {
 
 ReferenceTrack ReferenceTracker::highest() {
   ReferenceTrack track = blank();
-  if (!(seen_ > small_) && (run(track, small_, false) || !track.problem.empty())) {
+  const bool exact = !std::isinf(small_);
+  // What second order breaks down in need not be the motion: where there is an exact rung, that has the last word.
+  if (!(seen_ > small_) && (run(track, small_, false) || (!track.problem.empty() && (!exact || control_.stop())))) {
     track.third_order = lacking(track.bend);
     return track;
   }
-  track = blank();
-  track.rung = prepared_.rungs.size() - 1;
-  if (!corrects()) track.low = track.rung;
-  run(track, std::numeric_limits<double>::infinity(), false);
+  const auto made = [&](std::size_t low) {
+    track = blank();
+    track.rung = prepared_.rungs.size() - 1;
+    track.low = low;
+    run(track, std::numeric_limits<double>::infinity(), false);
+    return track.problem.empty();
+  };
+  // Where only the correction failed, the reference is made in its own rung.
+  if (corrects() && (made(second_) || control_.stop())) return track;
+  made(prepared_.rungs.size() - 1);
   return track;
 }
 

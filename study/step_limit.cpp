@@ -7,9 +7,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "withy/core/analysis/closed_pole.hpp"
 #include "withy/core/analysis/fastest_pole.hpp"
 #include "withy/core/model/closing.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/loop_following.hpp"
 #include "withy/study/fast_course.hpp"
 
 namespace withy::study {
@@ -19,8 +21,12 @@ namespace {
 /// as a whole, and where there are no derivatives, as at the end of a run that failed.
 std::optional<FastestPole> pole_at(const Prepared& prepared, const State& state) {
   const Model& model = prepared.model();
-  if (model.layout().speeds > largest_examined || !loops_of(model).empty()) return {};
+  if (model.layout().speeds > largest_examined) return {};
   try {
+    if (!loops_of(model).empty()) {
+      const FastestPole pole = fastest_pole_of_loops(model, *prepared.equations, state);
+      return std::abs(pole.value) > 0 ? std::optional(pole) : std::nullopt;
+    }
     const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
     const FastestPole pole = fastest_pole(dynamics, state, driven_speeds(model, state));
     if (std::abs(pole.value) > 0) return pole;
@@ -123,7 +129,9 @@ StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Regist
   find_fastest(prepared, summary, s);
   if (s.cause() != "stability") return s;
   const EquationsOfMotion& equations = *prepared.equations;
-  if (!s.made_by_load) s.fewer = best_slowing(*scene.model, equations.system(summary.final.time, summary.final.y));
+  if (!s.made_by_load)
+    s.fewer = best_slowing(*scene.model, equations.system(summary.final.time, summary.final.y),
+                           closing_rows(equations, summary.final.y));
   // Those with error control, so that no step need be chosen. The first folds stiffness into a symmetric mass matrix.
   for (const std::string id : {"imex", "radau"}) {
     // imex treats stiffness and damping of bodies implicitly, and loads explicitly.

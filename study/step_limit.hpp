@@ -46,7 +46,7 @@ struct TooStiff {
   std::string text;  ///< both, and what makes them so, in a clause
 };
 /// Where the steps to which the scene's integrator is stable about a state are more than `most_steps` up to the end of
-/// the run. Nothing where they are not, or where it is not known: of more than 200 speeds, with closed loops.
+/// the run. Nothing where they are not, or where it is not known: of more than 200 speeds.
 std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state,
                                   std::size_t most_steps = RunOptions().most_steps);
 /// Gives runs of a scene, which must outlive them, what they ask of its poles, and of the course of its

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/loop_following.hpp"
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/study/input_error.hpp"
@@ -130,7 +131,8 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point, c
   if (alike != nullptr)
     m.fastest = alike->fastest;
   else if (equations.layout().speeds <= largest_examined)
-    m.fastest = fastest_mode(m.prepared->model(), equations.system(initial.time, initial.y));
+    m.fastest = fastest_mode(m.prepared->model(), equations.system(initial.time, initial.y),
+                             closing_rows(equations, initial.y));
   return m;
 }
 

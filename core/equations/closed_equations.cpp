@@ -253,9 +253,43 @@ bool ClosedEquations::right_way_round(std::span<const double> y, std::size_t ind
 
 bool ClosedEquations::keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
                                  Work& work) const noexcept {
-  const std::span<double> later = J_after_.in(work), B = other_A_.in(work);
-  find_rows(after, later, work);
+  find_rows(after, J_after_.in(work), work);
   if (!factorize(before, work).ok()) return false;
+  return keeps_rank_by_mass(rank, work) || keeps_rank_by_columns(rank, work);
+}
+
+/// In the place of M⁻¹, which a direction with next to no inertia outweighs, one over the squares of J₁'s columns.
+bool ClosedEquations::keeps_rank_by_columns(std::size_t rank, Work& work) const noexcept {
+  const std::span<const double> now = J_.in(work), later = J_after_.in(work), Z = Z_.in(work);
+  const std::span<double> weights = slopes_.in(work).first(speeds_), A = A_.in(work), B = other_A_.in(work);
+  for (std::size_t c = 0; c < speeds_; ++c) {
+    double square = 0, moved = 0;  // what a motion drives is not moved
+    for (std::size_t i = 0; i < rows_; ++i) {
+      square += now[i * speeds_ + c] * now[i * speeds_ + c];
+      moved = std::max(moved, std::abs(Z[i * speeds_ + c]));
+    }
+    weights[c] = moved > 0 && square > 0 ? 1 / square : 0;
+  }
+  const auto weighed = [&](std::span<const double> rows, std::size_t i, std::size_t j) {
+    double sum = 0;
+    for (std::size_t c = 0; c < speeds_; ++c) sum += now[i * speeds_ + c] * weights[c] * rows[j * speeds_ + c];
+    return sum;
+  };
+  for (std::size_t i = 0; i < rows_; ++i)
+    for (std::size_t j = 0; j < rows_; ++j) A[i * rows_ + j] = weighed(now, i, j);
+  PivotedFactors f = factors(work);
+  f.size = rows_;
+  f.factorize(A.data(), PivotedFactors::independent);
+  if (f.rank < rank) return false;
+  const std::size_t r = f.rank;
+  for (std::size_t i = 0; i < r; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      B[i * r + j] = 0.5 * (weighed(later, f.order[i], f.order[j]) + weighed(later, f.order[j], f.order[i]));
+  return positive(B.data(), r);
+}
+
+bool ClosedEquations::keeps_rank_by_mass(std::size_t rank, Work& work) const noexcept {
+  const std::span<double> later = J_after_.in(work), B = other_A_.in(work);
   const PivotedFactors f = factors(work);
   if (f.rank < rank) return false;
   const std::span<const double> Z = Z_.in(work);

@@ -60,6 +60,9 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   [[nodiscard]] PivotedFactors factors(Work& work) const noexcept;
   /// Goes to a state: gaps, and the rows of J.
   void find_rows(std::span<const double> y, std::span<double> rows, Work& work) const noexcept;
+  /// keeps_rank of the rows in `work`.
+  bool keeps_rank_by_mass(std::size_t rank, Work& work) const noexcept;
+  bool keeps_rank_by_columns(std::size_t rank, Work& work) const noexcept;
   /// That with Z and the factors of J Z. The tree's own part of the memory is free after it.
   Evaluation factorize(std::span<const double> y, Work& work) const noexcept;
   /// change += Z λ for λ of J Z λ = −b, which is left in `multipliers_`.

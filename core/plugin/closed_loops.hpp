@@ -48,8 +48,9 @@ class ClosedLoops {
   /// \param work of EquationsOfMotion::make_work
   virtual Closing close(std::span<double> y, Work& work) const noexcept = 0;
   /// Whether the equations surely keep their rank on the straight way from one closed state to the next: with rows J₁
-  /// and J₂ of the two and L Lᵀ = J₁ M⁻¹ J₁ᵀ the symmetric part of L⁻¹ J₁ M⁻¹ J₂ᵀ L⁻ᵀ is positive, which is the unit
-  /// matrix where both are one. Where rank is lost in between it never is; else states nearer to each other tell.
+  /// and J₂ of the two and a positive W the symmetric part of J₁ W J₂ᵀ is positive, for W = M⁻¹ or for one that scales
+  /// the columns. Where rank is lost in between it is for none: J(s)ᵀ v = 0 there makes J₂ᵀ v a negative multiple of
+  /// J₁ᵀ v. Else states nearer to each other tell.
   /// \param rank of independent rows; false where there are less
   [[nodiscard]] virtual bool keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
                                         Work& work) const noexcept = 0;

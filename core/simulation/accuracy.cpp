@@ -204,10 +204,10 @@ std::optional<Removal> best_removal(const Model& model, const DenseSystem& syste
   return best;
 }
 
-std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system) {
+std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system, const Eigen::MatrixXd& rows) {
   std::optional<Slowing> best;
   without_highest_modes(model, system, [&](std::size_t speed, const DenseSystem& without) {
-    const double fastest = fastest_mode(model, without);
+    const double fastest = fastest_mode(model, without, rows);
     if (!best || fastest < best->fastest) best = {model.layout().speed_names[speed], fastest};
   });
   return best;

@@ -70,7 +70,8 @@ struct Slowing {
 };
 
 /// The highest mode of a body without which the fastest vibration is slowest; nothing where there are no modes.
-std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system);
+/// \param rows as fastest_mode
+std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system, const Eigen::MatrixXd& rows = {});
 
 /// A rate of a hinge for which the equations cannot be solved, whatever the accuracy.
 struct UnsolvableRate {

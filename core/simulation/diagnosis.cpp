@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "withy/core/simulation/elastic_modes.hpp"
+#include "withy/core/simulation/loop_following.hpp"
 
 namespace withy {
 namespace {
@@ -212,7 +213,7 @@ std::string describe_sound(const MassMatrixHistory& h) {
          brief(h.end.condition) + " (at the start " + brief(h.start.condition) + ").";
 }
 
-double fastest_mode(const Model& model, const DenseSystem& system) {
+double fastest_mode(const Model& model, const DenseSystem& system, const Eigen::MatrixXd& rows) {
   const auto n = static_cast<Eigen::Index>(system.size);
   Eigen::MatrixXd K = stiffness_of_modes(model);
   std::vector<Eigen::Index> free;
@@ -221,9 +222,15 @@ double fastest_mode(const Model& model, const DenseSystem& system) {
                      [i](const PrescribedRate& p) { return static_cast<Eigen::Index>(p.speed) == i; }))
       free.push_back(i);
   }
-  const Eigen::MatrixXd M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n)(free, free);
+  Eigen::MatrixXd M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n)(free, free);
   K = K(free, free).eval();
-  if (free.empty() || K.isZero(0) || !M.allFinite()) return 0;
+  if (free.empty() || K.isZero(0) || !M.allFinite() || !rows.allFinite()) return 0;
+  if (rows.rows() > 0) {
+    const Eigen::MatrixXd Z = closed_motions(rows(Eigen::all, free), M.diagonal());
+    if (Z.cols() == 0) return 0;
+    M = (Z.transpose() * M * Z).eval();
+    K = (Z.transpose() * K * Z).eval();
+  }
   const Eigen::LLT<Eigen::MatrixXd> factor(0.5 * (M + M.transpose()));
   if (factor.info() != Eigen::Success) return 0;
   const Eigen::MatrixXd half = factor.matrixL().solve(K);

@@ -61,7 +61,9 @@ std::string describe_sound(const MassMatrixHistory& history);
 
 /// Greatest √ of the eigenvalues of M⁻¹K [rad/s], K the stiffness of all bodies: how fast the modes retained can
 /// vibrate in the tree. 0 where the symmetric part of M is not positive definite.
-double fastest_mode(const Model& model, const DenseSystem& system);
+///
+/// \param rows of closing equations there (closing_rows); the motions are those that keep loops closed
+double fastest_mode(const Model& model, const DenseSystem& system, const Eigen::MatrixXd& rows = {});
 
 /// Continuous states of loads whose rates are not finite from a state on, at the first such time found.
 struct NonfiniteRates {

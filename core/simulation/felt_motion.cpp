@@ -65,9 +65,18 @@ bool is_frame(FrameIndex at) { return at.body >= 0 && at.frame >= 0; }
 }  // namespace
 
 FeltMotion::FeltMotion(const Model& model, const EquationsOfMotion& equations)
-    : model_(model), bodies_(model.bodies().size()), scratch_(model.load_scratch()) {
+    : model_(model),
+      loops_(dynamic_cast<const ClosedLoops*>(&equations)),
+      loops_work_(0),
+      bodies_(model.bodies().size()),
+      scratch_(model.load_scratch()) {
   for (const LoadNode& node : model.loads())
     frames_.insert(frames_.end(), node.load->frames().begin(), node.load->frames().end());
+  if (loops_ != nullptr) {
+    frames_.insert(frames_.end(), loops_->frames().begin(), loops_->frames().end());
+    multipliers_.resize(loops_->closing_equations());
+    loops_work_ = equations.make_work();
+  }
   motions_.resize(frames_.size());
   wrenches_.resize(frames_.size());
   at_frames_ = std::any_of(frames_.begin(), frames_.end(), is_frame);
@@ -114,6 +123,10 @@ void FeltMotion::add_loads(const State& state) {
       node.wrenches(state.time, state.y, model_.layout(), std::span(motions_).subspan(first, count),
                     std::span(wrenches_).subspan(first, count), scratch_);
     first += count;
+  }
+  if (loops_ != nullptr) {
+    loops_->multipliers(state.time, state.y, multipliers_, loops_work_);
+    loops_->wrenches(multipliers_, std::span(wrenches_).subspan(first), loops_work_);
   }
   for (std::size_t i = 0; i < frames_.size(); ++i)
     if (is_frame(frames_[i])) bodies_[static_cast<std::size_t>(frames_[i].body)].load += wrenches_[i].force;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tree_motion.hpp"
 
@@ -14,10 +15,11 @@ namespace withy {
 /// The motions without what fields give: a satellite in free fall carries no load from its orbit. Forces are those on
 /// all mass points, where the bodies' first order has them; over a body a field counts as linear, by its value and its
 /// gradient at the body's frame, which is exact but for point-gravity: there the rest is of the order (l/d)² of the
-/// gradient's part, with l the length of the body and d the distance. And with what loads at frames exert.
+/// gradient's part, with l the length of the body and d the distance. And with what loads and closed loops exert at
+/// frames.
 class FeltMotion {
  public:
-  /// The model must outlive the object.
+  /// The model and the equations must outlive the object.
   FeltMotion(const Model& model, const EquationsOfMotion& equations);
   /// At a state of the equations and the motions there. Allocates where the model has fields.
   void update(const State& state, const std::vector<BodyMotion>& motions);
@@ -28,8 +30,8 @@ class FeltMotion {
   [[nodiscard]] Vector3 turning(std::size_t body) const {
     return turning_.empty() ? bodies_[body].rate : Vector3(bodies_[body].rate + turning_[body]);
   }
-  /// What loads exert at their frames, world axes, in the order of the model's loads and of the frames of each, as at
-  /// the last update.
+  /// What loads exert at their frames, world axes, in the order of the model's loads and of the frames of each, then
+  /// what loops exert, in the order of ClosedLoops::frames; as at the last update.
   [[nodiscard]] std::span<const Wrench> at_frames() const { return wrenches_; }
 
  private:
@@ -37,10 +39,13 @@ class FeltMotion {
   void add_loads(const State& state);
 
   const Model& model_;
+  const ClosedLoops* loops_;           ///< null: the equations are a tree's
+  Work loops_work_;                    ///< of the equations
+  std::vector<double> multipliers_;    ///< of the loops [N]
   std::unique_ptr<Observation> seen_;  ///< null: there is nothing to be seen for
   std::vector<BodyMotion> bodies_;
   std::vector<Vector3> turning_;    ///< of the axes of fields, one a body; empty: there are none
-  std::vector<FrameIndex> frames_;  ///< at which loads act, load after load
+  std::vector<FrameIndex> frames_;  ///< at which loads act, load after load, then loops
   bool at_frames_ = false;          ///< some act at frames of bodies
   std::vector<FrameMotion> motions_;
   std::vector<Wrench> wrenches_;

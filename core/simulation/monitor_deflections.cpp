@@ -64,6 +64,10 @@ void Monitor::note(std::size_t order, const std::string& place, const std::strin
   const double size = std::hypot(d[0], d[1], d[2]);
   if (order >= excess_order_ || size <= deflection_limit_ * length) return;
   excess_order_ = order;
+  if (!std::isfinite(size)) {
+    excess_ = place + " of '" + body + "' has no finite deflection any more";
+    return;
+  }
   past_deflection_ = true;
   excess_ = place + " of '" + body + "' is deflected by " + brief(size) + " m, " + brief(size / length) +
             " times its length (limits.deflection: " + brief(deflection_limit_) + ")";

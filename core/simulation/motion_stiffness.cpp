@@ -1,9 +1,11 @@
 #include "withy/core/simulation/motion_stiffness.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <utility>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/shape/section_fields.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
 
@@ -85,6 +87,33 @@ Matrix3 held_rotations(const Model& model, std::size_t hinge) {
   return held;
 }
 
+/// f·(θ × Φq) = θᵀ D q, and f·(θ × (θ × X)) = θᵀ E θ.
+Matrix3X by_modes(const Vector3& force, const Matrix3X& phi) { return -skew<double>(force) * phi; }
+Matrix3 by_turn(const Vector3& force, const Vector3& X) {
+  const Matrix3 both = force * X.transpose();
+  return 0.5 * (both + both.transpose()) - force.dot(X) * Matrix3::Identity();
+}
+
+/// Orthonormal columns z with bound · z = 0; rows that rounding leaves bind nothing.
+Eigen::MatrixXd left_by(const Eigen::MatrixXd& bound) {
+  constexpr double rounding = 1e-9;
+  const Eigen::Index n = bound.cols();
+  if (bound.rows() == 0 || bound.isZero(0)) return Eigen::MatrixXd::Identity(n, n);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(bound, Eigen::ComputeFullV);
+  const Eigen::Index rank = (svd.singularValues().array() > rounding * svd.singularValues()[0]).count();
+  return svd.matrixV().rightCols(n - rank);
+}
+
+/// Calls act(frame) for the frames of all loads, then for those of bodies that loops act on, in ClosedLoops' order.
+template <class Act>
+void each_loaded_frame(const Model& model, Act&& act) {
+  for (const LoadNode& node : model.loads())
+    for (const FrameIndex& at : node.load->frames()) act(at);
+  for (const LoopClosure* loop : loops_of(model))
+    for (const FrameIndex& at : {loop->a(), loop->b()})
+      if (at.body >= 0) act(at);
+}
+
 bool same_root(const std::optional<HeldSection>& a, const std::optional<HeldSection>& b) {
   if (!a || !b) return !a && !b;
   return a->held == b->held && same_section(a->at, b->at);
@@ -127,13 +156,22 @@ MotionStiffness::Own::Own(const ModalShape& shape, const HeldSection* root) {
     seen.push_back(root->seen(shape.particles[k].at));
   for (std::size_t term = 0; term < motion.size(); ++term) {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(shape.modes(), shape.modes());
+    Matrix3X D = Matrix3X::Zero(3, shape.modes());
+    Matrix3 E = Matrix3::Zero();
     for (std::size_t k = 0; k < shape.particles.size(); ++k) {
       const Particle& p = shape.particles[k];
-      K += along(root != nullptr ? seen[k].gamma : p.at.gamma, unit_force(term, p.mass, p.mass * p.at.X));
+      const PointExpansion& at = root != nullptr ? seen[k] : p.at;
+      const Vector3 force = unit_force(term, p.mass, p.mass * p.at.X);
+      K += along(at.gamma, force);
+      D += by_modes(force, at.phi);
+      E += by_turn(force, at.X);
     }
     motion[term] = reduced(K, S);
+    turned[term] = D * S;
+    twice[term] = E;
   }
   total.setZero(S.cols(), S.cols());
+  buckled.setZero(S.cols());
   solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S.cols());
 }
 
@@ -150,13 +188,11 @@ MotionStiffness::MotionStiffness(const Model& model, std::size_t body, const Mot
     if (h == body) stations_.push_back({h, -1, section_of(model, hinge.child_frame, twin)});
   }
   std::size_t index = 0;
-  for (const LoadNode& node : model.loads()) {
-    for (const FrameIndex& at : node.load->frames()) {
-      if (at.body == static_cast<int>(body) && at.frame >= 0)
-        loaded_.push_back({index, section_of(model, at.frame, twin)});
-      ++index;
-    }
-  }
+  each_loaded_frame(model, [&](FrameIndex at) {
+    if (at.body == static_cast<int>(body) && at.frame >= 0)
+      loaded_.push_back({index, section_of(model, at.frame, twin)});
+    ++index;
+  });
 }
 
 std::shared_ptr<const MotionStiffness::Section> MotionStiffness::section_of(const Model& model, int frame,
@@ -173,9 +209,10 @@ std::shared_ptr<const MotionStiffness::Section> MotionStiffness::section_of(cons
 }
 
 std::shared_ptr<const MotionStiffness::Section> MotionStiffness::made(const PointExpansion& at) const {
-  const std::array<Eigen::MatrixXd, 3> gamma = seen(at).gamma;
-  const auto stiffness = [&](std::size_t axis) { return reduced(gamma[axis], own_->S); };
-  return std::make_shared<const Section>(Section{at, {stiffness(0), stiffness(1), stiffness(2)}});
+  const PointExpansion from_root = seen(at);
+  const auto stiffness = [&](std::size_t axis) { return reduced(from_root.gamma[axis], own_->S); };
+  return std::make_shared<const Section>(
+      Section{at, {stiffness(0), stiffness(1), stiffness(2)}, from_root.phi * own_->S});
 }
 
 MotionStiffness::MotionStiffness(const Model& model, const Body& whole, const std::vector<int>& segments)
@@ -202,44 +239,71 @@ MotionStiffness::MotionStiffness(const Model& model, const Body& whole, const st
       if (auto at = section(*outboard)) stations_.push_back({h, 1, std::move(at)});
   }
   std::size_t index = 0;
-  for (const LoadNode& node : model.loads()) {
-    for (const FrameIndex& at : node.load->frames()) {
-      const auto x = at.body >= 0 && at.frame >= 0 ? place_of(at) : std::nullopt;
-      if (x)
-        if (auto loaded = section(*x)) loaded_.push_back({index, std::move(loaded)});
-      ++index;
-    }
-  }
+  each_loaded_frame(model, [&](FrameIndex at) {
+    const auto x = at.body >= 0 && at.frame >= 0 ? place_of(at) : std::nullopt;
+    if (x)
+      if (auto loaded = section(*x)) loaded_.push_back({index, std::move(loaded)});
+    ++index;
+  });
 }
 
 PointExpansion MotionStiffness::seen(const PointExpansion& at) const { return root_ ? root_->seen(at) : at; }
 
-LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads) {
-  LoadRatio ratio;
-  Eigen::MatrixXd& total = own_->total;
-  if (total.size() == 0) return ratio;
-  const std::array<Eigen::MatrixXd, 12>& own = own_->motion;
-  const BodyMotion& B = bodies[body_];
-  const auto values = term_values(B);
-  total.setZero();
-  for (std::size_t k = 0; k < own.size(); ++k) total += values[k] * own[k];
-  const auto add = [&total](const Vector3& force, const Section& section) {
-    for (Eigen::Index c = 0; c < 3; ++c) total += force[c] * section.stiffness[static_cast<std::size_t>(c)];
-  };
-  const auto loaded = loads.empty() ? std::span<const Loaded>() : std::span<const Loaded>(loaded_);
+template <class Act>
+void MotionStiffness::each_force(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads,
+                                 Act&& act) const {
+  const Matrix3 to_body = bodies[body_].R.transpose();
   for (const Station& s : stations_) {
     const BodyMotion& carried = bodies[s.carried];
-    add(s.sign * (B.R.transpose() * (carried.force - carried.load)), *s.section);
+    act(s.sign * (to_body * (carried.force - carried.load)), *s.section);
   }
-  for (const Loaded& l : loaded) add(-(B.R.transpose() * loads[l.load].force), *l.section);
-  own_->solver.compute(total);
-  const Eigen::Index last = total.rows() - 1;
-  ratio.least = own_->solver.eigenvalues()[0];
-  ratio.greatest = own_->solver.eigenvalues()[last];
-  // Eigenvalues are known to rounding of the greatest of them.
-  const double rounding = static_cast<double>(total.rows()) * std::numeric_limits<double>::epsilon();
-  ratio.stiffens = ratio.greatest * (1 - rounding) > -ratio.least;
-  const auto v = own_->solver.eigenvectors().col(ratio.stiffens ? last : 0);
+  if (loads.empty()) return;
+  for (const Loaded& l : loaded_) act(-(to_body * loads[l.load].force), *l.section);
+}
+
+void MotionStiffness::add_turning(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads,
+                                  const Matrix3X& T) {
+  const auto values = term_values(bodies[body_]);
+  Matrix3X D = Matrix3X::Zero(3, T.cols());
+  Matrix3 E = Matrix3::Zero();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    D += values[k] * own_->turned[k];
+    E += values[k] * own_->twice[k];
+  }
+  each_force(bodies, loads, [&](const Vector3& force, const Section& section) {
+    D += by_modes(force, section.phi);
+    E += by_turn(force, section.at.X);
+  });
+  own_->total += T.transpose() * D + D.transpose() * T + T.transpose() * E * T;
+}
+
+void MotionStiffness::find_extremes(const Eigen::MatrixXd* bound, LoadRatio& ratio) {
+  const Eigen::MatrixXd& total = own_->total;
+  const auto take = [&](const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& solver, const auto& to_modes) {
+    const Eigen::Index last = solver.eigenvalues().size() - 1;
+    ratio.least = solver.eigenvalues()[0];
+    ratio.greatest = solver.eigenvalues()[last];
+    // Eigenvalues are known to rounding of the greatest of them.
+    const double rounding = static_cast<double>(total.rows()) * std::numeric_limits<double>::epsilon();
+    ratio.stiffens = ratio.greatest * (1 - rounding) > -ratio.least;
+    to_modes(solver.eigenvectors().col(ratio.stiffens ? last : 0));
+  };
+  const Eigen::MatrixXd free = bound != nullptr ? left_by(*bound * own_->S) : Eigen::MatrixXd();
+  own_->buckled.setZero();
+  if (bound == nullptr) {
+    own_->solver.compute(total);
+    take(own_->solver, [this](const auto& v) { own_->buckled = v; });
+  } else if (free.cols() > 0) {
+    const Eigen::MatrixXd of_free = free.transpose() * total * free;
+    take(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(of_free), [&](const auto& v) { own_->buckled = free * v; });
+  }
+}
+
+void MotionStiffness::find_shares(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads,
+                                  const Vector3& turn, LoadRatio& ratio) const {
+  const BodyMotion& B = bodies[body_];
+  const auto values = term_values(B);
+  const Eigen::VectorXd& v = own_->buckled;
   // vᵀ K v without a temporary.
   const auto work = [&v](const Eigen::MatrixXd& K) {
     double sum = 0;
@@ -248,10 +312,17 @@ LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies, std::
     }
     return sum;
   };
-  const auto works_of = [&work](const Section& section) {
-    return Vector3(work(section.stiffness[0]), work(section.stiffness[1]), work(section.stiffness[2]));
+  const auto works_of = [&](const Section& section) {
+    Vector3 bent = Vector3::Zero();
+    for (Eigen::Index i = 0; i < v.size(); ++i) bent += v[i] * section.phi.col(i);
+    return Vector3(Vector3(work(section.stiffness[0]), work(section.stiffness[1]), work(section.stiffness[2])) +
+                   2 * turn.cross(bent) + turn.cross(turn.cross(section.at.X)));
   };
-  for (std::size_t k = 0; k < own.size(); ++k) ratio.shares[k] = values[k] * work(own[k]);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    double sum = work(own_->motion[k]) + turn.dot(own_->twice[k] * turn);
+    for (Eigen::Index i = 0; i < v.size(); ++i) sum += 2 * v[i] * turn.dot(own_->turned[k].col(i));
+    ratio.shares[k] = values[k] * sum;
+  }
   for (const Station& s : stations_) {
     const BodyMotion& carried = bodies[s.carried];
     const Vector3 force = s.sign * (B.R.transpose() * carried.force);
@@ -259,14 +330,38 @@ LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies, std::
     const Vector3 works = works_of(*s.section);
     ratio.shares[relative_motion] += force.dot(works);
     ratio.shares[of_loads] -= s.sign * (B.R.transpose() * carried.load).dot(works);
-    for (std::size_t k = 0; k < own.size(); ++k) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
       const double share = s.sign * values[k] * unit_force(k, carried.mass, moment).dot(works);
       ratio.shares[k] += share;
       ratio.shares[relative_motion] -= share;
     }
   }
-  for (const Loaded& l : loaded)
+  if (loads.empty()) return;
+  for (const Loaded& l : loaded_)
     ratio.shares[of_loads] -= (B.R.transpose() * loads[l.load].force).dot(works_of(*l.section));
+}
+
+LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads,
+                                    const LoopBound* loop) {
+  LoadRatio ratio;
+  Eigen::MatrixXd& total = own_->total;
+  if (total.size() == 0) return ratio;
+  const auto values = term_values(bodies[body_]);
+  total.setZero();
+  for (std::size_t k = 0; k < values.size(); ++k) total += values[k] * own_->motion[k];
+  each_force(bodies, loads, [&total](const Vector3& force, const Section& section) {
+    for (Eigen::Index c = 0; c < 3; ++c) total += force[c] * section.stiffness[static_cast<std::size_t>(c)];
+  });
+  Vector3 turn = Vector3::Zero();
+  if (loop != nullptr) {
+    const Matrix3X T = loop->turn * own_->S;
+    add_turning(bodies, loads, T);
+    find_extremes(&loop->bound, ratio);
+    turn = T * own_->buckled;
+  } else {
+    find_extremes(nullptr, ratio);
+  }
+  find_shares(bodies, loads, turn, ratio);
   return ratio;
 }
 

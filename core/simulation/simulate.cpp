@@ -11,6 +11,7 @@
 #include "withy/core/simulation/end_notes.hpp"
 #include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/loop_following.hpp"
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/monitor.hpp"
 #include "withy/core/simulation/motion_gap.hpp"
@@ -292,8 +293,9 @@ MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const 
   }
   // Where a run has diverged nothing vibrates as it did on the way there.
   const State& trusted = run.monitor().trusted();
-  summary.fastest_mode = fastest_mode(
-      model, stop.status == RunStatus::diverged ? equations.system(trusted.time, trusted.y) : history.last);
+  const bool diverged = stop.status == RunStatus::diverged;
+  summary.fastest_mode = fastest_mode(model, diverged ? equations.system(trusted.time, trusted.y) : history.last,
+                                      closing_rows(equations, diverged ? trusted.y : summary.final.y));
   return history;
 }
 

@@ -131,7 +131,9 @@ struct RunSummary {
   /// Times [s] at which steps were rejected as they are where a load jumps without having declared it.
   std::vector<double> suspected_jumps;
   Conditioning conditioning;  ///< at the final state; empty where there are more than 200 generalized speeds
-  double fastest_mode = 0;  ///< greatest √ of the eigenvalues of M⁻¹K there [rad/s]; 0 where they were not looked at
+  /// Greatest √ of the eigenvalues of M⁻¹K there, of the motions that keep loops closed [rad/s]; 0 where they were not
+  /// looked at.
+  double fastest_mode = 0;
   Validity validity;
   StepStatistics steps;
   double cpu_seconds = 0;  ///< of this thread; of a run that was resumed with those before its checkpoint

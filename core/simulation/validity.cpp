@@ -34,8 +34,6 @@ std::size_t work_size(const EquationsOfMotion* equations) {
 
 }  // namespace
 
-const std::size_t ValidityWatch::look_interval = look_cost * samples_per_cost;
-
 ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equations, const EquationsOfMotion* beyond,
                              Validity& validity)
     : model_(model),
@@ -45,18 +43,20 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       motion_(model),
       felt_(model, equations),
       frequency_(model, equations),
+      loops_(model, equations),
       work_(std::max(work_size(&equations), work_size(beyond))),
       rates_(equations.size()),
       beyond_rates_(equations.size()),
       difference_(model.layout().speeds),
       product_(model.layout().speeds),
-      cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0)),
+      cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0) + (loops_.any() ? model.layout().speeds : 0)),
       held_{0, std::vector<double>(equations.size())},
       fastest_(held_),
       excess_(worthwhile),
       along_(beyond != nullptr && model.layout().speeds <= most_speeds_along ? equations.size() : 0, most_along),
       closely_(beyond != nullptr && equations.linearly_implicit() == nullptr ? equations.size() : 0, most_closely),
-      busiest_(model.layout().positions, model.layout().speeds, equations.size()) {
+      busiest_(model.layout().positions, model.layout().speeds, equations.size()),
+      look_interval_((look_cost + (loops_.any() ? model.layout().speeds : 0)) * samples_per_cost) {
   std::unordered_map<const Body*, std::size_t> twins;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
@@ -131,7 +131,7 @@ void ValidityWatch::follow(const State& state, const Observation& seen) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const double rate = seen.turning(static_cast<int>(bodies_[i].body));
     note_rate(i, rate, state.time);
-    const double least = least_ratio * frequency_.of(bodies_[i].body);
+    const double least = least_ratio * fundamental(bodies_[i].body);
     if (const double known = std::max(bodies_[i].sampled, least); known > 0) excess = std::max(excess, rate / known);
   }
   if (excess <= excess_) return;
@@ -141,11 +141,11 @@ void ValidityWatch::follow(const State& state, const Observation& seen) {
 
 void ValidityWatch::note_rate(std::size_t index, double rate, double time) {
   BodyValidity& v = validity_.bodies[index];
-  const double fundamental = frequency_.of(bodies_[index].body);
-  if (!(fundamental > 0)) return;
-  const double ratio = rate / fundamental;
+  const double lowest = fundamental(bodies_[index].body);
+  if (!(lowest > 0)) return;
+  const double ratio = rate / lowest;
   if (ratio <= v.rate_ratio && v.fundamental > 0) return;
-  v.fundamental = fundamental;
+  v.fundamental = lowest;
   v.rate_ratio = ratio;
   v.rate_time = time;
 }
@@ -170,9 +170,10 @@ bool ValidityWatch::look_at_loads(const State& state) {
   const Layout& layout = model_.layout();
   motion_.update(state.y, std::span<const double>(rates_).subspan(layout.positions, layout.speeds));
   felt_.update(state, motion_.bodies());
+  loops_.update(state.y);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     BodyValidity& v = validity_.bodies[i];
-    const LoadRatio load = bodies_[i].stiffness.evaluate(felt_.bodies(), felt_.at_frames());
+    const LoadRatio load = bodies_[i].stiffness.evaluate(felt_.bodies(), felt_.at_frames(), loops_.of(bodies_[i].body));
     v.buckling = std::max(v.buckling, -load.least);
     if (bodies_[i].whole) {
       const LoadRatio whole = bodies_[i].whole->evaluate(felt_.bodies(), felt_.at_frames());
@@ -189,6 +190,7 @@ bool ValidityWatch::look_at_loads(const State& state) {
 bool ValidityWatch::look_at_motion(const State& state) {
   if (!look_at_loads(state)) return false;
   frequency_.update(state.y, work_);
+  loops_.find_frequencies();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Watched& w = bodies_[i];
     const double rate = felt_.turning(w.body).norm();
@@ -259,6 +261,7 @@ void ValidityWatch::remember(Memory& memory) {
     }
   }
   frequency_.remember(memory);
+  loops_.remember(memory);
   memory(validity_.samples);
   memory(validity_.neglected.samples);
   memory(squares_);

@@ -13,6 +13,7 @@
 #include "withy/core/simulation/busiest_state.hpp"
 #include "withy/core/simulation/carried_frequency.hpp"
 #include "withy/core/simulation/felt_motion.hpp"
+#include "withy/core/simulation/loop_following.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 #include "withy/core/simulation/states_along.hpp"
 
@@ -32,8 +33,8 @@ struct BodyValidity {
   std::string name;
   std::string station;              ///< whose deflection is held against the body's length (measured_place)
   std::vector<std::string> beside;  ///< further ones; the greatest counts (measured_places)
-  /// ω₁ of the structure that the body is part of, as it is carried and loaded: with what hangs on it, hinges held, at
-  /// the last sample up to rate_time [rad/s].
+  /// ω₁ of the structure that the body is part of, as it is carried and loaded: with what hangs on it, hinges held but
+  /// for what closed loops ask of theirs (LoopFollowing), at the last sample up to rate_time [rad/s].
   double fundamental = 0;
   double rate_ratio = 0;  ///< greatest |ω| of the body's frame over ω₁
   double rate_time = 0;   ///< when [s]
@@ -63,7 +64,7 @@ struct Validity {
 /// Samples one run. The interval is counted in evaluations of the equations of motion that steps make, which makes the
 /// samples the same on every machine and at every output interval, and is such that samples take about 2 % of a long
 /// run. Loads are looked at more often, for as much again: what a body carries may be there for a few steps, as after
-/// an impact. Allocates nothing after construction.
+/// an impact. Allocates nothing after construction where there are no closed loops.
 class ValidityWatch {
  public:
   /// `beyond`: equations of the same model that neglect less, or null.
@@ -77,7 +78,7 @@ class ValidityWatch {
     along_.observe(state);
     closely_.observe(state);
     busiest_.observe(state);
-    if (evaluations >= next_look_ && look_at_busiest(trusted)) next_look_ = evaluations + look_interval;
+    if (evaluations >= next_look_ && look_at_busiest(trusted)) next_look_ = evaluations + look_interval_;
     if (due_ && held_.time <= trusted) sample_due();
     if (seen != nullptr && state.time <= trusted) follow(state, *seen);
     if (!due_ && evaluations >= next_) hold(state, evaluations);
@@ -114,6 +115,11 @@ class ValidityWatch {
     std::optional<MotionStiffness> whole = {};      ///< of a body in segments, at the first of them
   };
   static std::vector<Family> families_of(const ModalShape& shape);
+  /// ω₁ of a body at the last sample [rad/s].
+  [[nodiscard]] double fundamental(std::size_t body) const {
+    const double closed = loops_.frequency(body);
+    return closed > 0 ? closed : frequency_.of(body);
+  }
   void sample_due();
   void hold(const State& state, std::size_t evaluations);
   void follow(const State& state, const Observation& seen);
@@ -135,6 +141,7 @@ class ValidityWatch {
   FeltMotion felt_;
   std::vector<Watched> bodies_;
   CarriedFrequency frequency_;
+  LoopFollowing loops_;
   Work work_;  ///< of whichever equations are evaluated
   std::vector<double> rates_, beyond_rates_, difference_, product_;
   double squares_ = 0, neglected_squares_ = 0, greatest_ = 0, neglected_greatest_ = 0;
@@ -147,7 +154,7 @@ class ValidityWatch {
   StatesAlong along_, closely_;
   BusiestState busiest_;
   std::size_t next_look_ = 0;  ///< evaluations at which the next look at it is due
-  static const std::size_t look_interval;
+  std::size_t look_interval_;
 };
 
 }  // namespace withy

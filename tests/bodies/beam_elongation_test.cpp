@@ -270,6 +270,16 @@ TEST(BeamElongation, exact_rod_bends_stretches_and_shears_as_reissner_says) {
   EXPECT_NEAR(tip.y(), expected[1], 1e-7);
 }
 
+/// Turned back by shear, a root that turns moves no mass.
+TEST(BeamElongation, shear_without_rotary_inertia_is_remarked_on) {
+  const auto with = [](double rotary) {
+    return elastic_beam({{"bending_y", along(200, 2, "orthogonal-polynomials", rotary)}, {"shear_y", along(900, 1)}});
+  };
+  ASSERT_EQ(with(0)->remarks().size(), 1U);
+  EXPECT_THAT(with(0)->remarks()[0], testing::HasSubstr("shear_y without a rotary_inertia in bending_y"));
+  EXPECT_TRUE(with(0.01)->remarks().empty());
+}
+
 /// A pin says nothing of stretching.
 TEST(BeamElongation, families_without_rods_are_refused) {
   Registry registry;

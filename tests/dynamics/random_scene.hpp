@@ -20,8 +20,9 @@ struct SceneWish {
   int modes = 0;            ///< in bending_y of every beam, half of them in bending_z and torsion; 0: one to three
   bool aligned = false;     ///< hinges are along x and z, frames are not turned
   bool rotary = false;      ///< sections have inertia in bending
-  bool stretching = false;  ///< beams have extension and shear
-  bool varying = false;     ///< beams vary along their length, and have modes of their own: strains with kinks
+  bool stretching =
+      false;             ///< beams have extension and shear, and inertia in bending, without which shear undoes a turn
+  bool varying = false;  ///< beams vary along their length, and have modes of their own: strains with kinks
 };
 
 /// Text of a random scene; the same seed gives the same text.
@@ -88,7 +89,7 @@ class RandomScene {
     s << "]";
     return s.str();
   }
-  [[nodiscard]] std::string rotary() const { return wish_.rotary ? ", rotary_inertia: 0.002" : ""; }
+  [[nodiscard]] std::string rotary() const { return wish_.rotary || wish_.stretching ? ", rotary_inertia: 0.002" : ""; }
   std::string direction() {
     if (wish_.planar) return "[0, 0, 1]";
     if (wish_.aligned) return chance(0.5) ? "[1, 0, 0]" : "[0, 0, 1]";  // the second axis is y
@@ -108,14 +109,14 @@ class RandomScene {
     return s.str();
   }
 
-  void stretch() {
+  void stretch(bool in_space) {
     const auto strain = [this](const char* name, double low, double high) {
       text_ << "    " << name << ": {stiffness: " << number(low, high) << ", modes: " << whole(1, 2)
             << ", family: orthogonal-polynomials}\n";
     };
     strain("extension", 300, 900);
     strain("shear_y", 100, 300);
-    if (!wish_.planar) strain("shear_z", 100, 300);
+    if (in_space) strain("shear_z", 100, 300);
   }
 
   void add(int b, std::ostringstream& hinges) {
@@ -130,7 +131,8 @@ class RandomScene {
       text_ << "    type: beam\n    length: " << length << "\n    mass_per_length: " << along(0.5, 2, length) << "\n"
             << "    damping_ratio: 0.01\n    bending_y: {stiffness: " << along(20, 90, length)
             << ", modes: " << (wish_.modes > 0 ? wish_.modes : whole(1, 3)) << family() << rotary() << "}\n";
-      if (!wish_.planar && chance(0.7)) {
+      const bool bends_in_space = !wish_.planar && chance(0.7);
+      if (bends_in_space) {
         text_ << "    bending_z: {stiffness: " << along(20, 90, length)
               << ", modes: " << (half > 0 ? half : whole(1, 2)) << family() << rotary() << "}\n";
       }
@@ -143,7 +145,7 @@ class RandomScene {
                                                     : "")
               << "}\n";
       }
-      if (wish_.stretching) stretch();
+      if (wish_.stretching) stretch(bends_in_space);
       text_ << "    frames: {a: {at: tip, " << pose() << "}, m: {at: 0.31, " << pose() << "}, r: {at: root, " << pose()
             << "}}\n";
     } else {

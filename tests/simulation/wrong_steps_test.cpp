@@ -13,7 +13,7 @@ namespace {
 constexpr const char* pendulum =
     "format: withy/1\ntime: {end: 1}\nbodies: {b: {type: rigid, mass: 1, center_of_mass: [1, 0, 0], inertia: [0.1, "
     "0.1, "
-    "1.1, 0, 0, 0]}}\nhinges: {r: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}\n";
+    "0.1, 0, 0, 0]}}\nhinges: {r: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}\n";
 
 /// Says that a step is done and stays where it is.
 class Standing final : public WrappedSteps {

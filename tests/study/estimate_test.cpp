@@ -257,5 +257,65 @@ initial: {hinges: {h: {position: ["80 deg"]}, g: {position: ["40 deg"]}}}
   EXPECT_THAT(sensitive.without_estimate, testing::HasSubstr("not known: the motion is sensitive"));
 }
 
+/// What the coarse runs of a tenth of the cost tell, against what runs at any cost do. At most three times as much, or
+/// only as a bound, or nothing.
+void expect_right_or_unsaid(const std::string& text) {
+  const auto of = [&](Estimate asked) {
+    RunSettings settings;
+    settings.estimate = asked;
+    const Prepared prepared =
+        prepare(SceneValues::parse(text, "hit.yaml").choose_formulation("linear", "the test"), plugins());
+    return run(prepared, plugins(), settings).certificate;
+  };
+  const Certificate told = of(Estimate::automatic), truth = of(Estimate::always);
+  ASSERT_TRUE(truth.estimate) << truth.without_estimate;
+  if (!told.estimate) return;
+  const auto compare = [&](const std::map<std::string, double>& a, const std::map<std::string, double>& b) {
+    for (const auto& [name, value] : a)
+      if (told.estimate->at_most.count(name) == 0) EXPECT_LE(value, 3 * b.at(name)) << name;
+  };
+  compare(told.estimate->distances.hinges, truth.estimate->distances.hinges);
+  compare(told.estimate->distances.tips, truth.estimate->distances.tips);
+}
+
+// In coarse steps without error control the other model enters the stop in mid-step and is thrown, ours is not: 1500
+// degrees were told of 2.5.
+TEST(Estimate, OfAnArmThatFallsOnAStopIsNotThatOfAModelThatCoarseStepsThrow) {
+  for (const char* lower : {"-1.0", "-0.7", "-0.4"})
+    expect_right_or_unsaid(std::string(R"(format: withy/1
+integrator: {name: dopri5, rtol: 1e-7, atol: 1e-9}
+time: {end: 2, output: 0.02}
+gravity: [0, -9.81, 0]
+bodies:
+  hub: {type: rigid, mass: 0.5, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+  b: {type: beam, length: 1, mass_per_length: 0.5, damping_ratio: 0.005, bending_y: {stiffness: 25, modes: 3}}
+  bob: {type: rigid, mass: 0.2, inertia: [0.0002, 0.0002, 0.0002, 0, 0, 0]}
+hinges:
+  h: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  w: {type: weld, parent: hub, child: b}
+  r: {type: weld, parent: b.tip, child: bob}
+loads:
+  stop: {type: hinge-limit, hinge: h, lower: )") +
+                           lower + ", stiffness: 3000, dissipation: 0.3, onset: 0.005}\n");
+}
+
+// The mass of the other model moves with its modes; in coarse steps it drifts off.
+TEST(Estimate, OfAFreeBeamThatIsHitIsNotTheDriftOfCoarseSteps) {
+  for (const char* stiffness : {"34", "60"})
+    expect_right_or_unsaid(std::string(R"(format: withy/1
+integrator: {name: dopri5, rtol: 1e-7, atol: 1e-9}
+time: {end: 1.2, output: 0.02}
+bodies:
+  b: {type: beam, length: 3, mass_per_length: 0.8, bending_y: {modes: 3, family: free-free, stiffness: )") +
+                           stiffness + R"(}}
+  bob: {type: rigid, mass: 0.5, inertia: [0.002, 0.002, 0.002, 0, 0, 0]}
+hinges:
+  h: {type: planar, parent: world, child: b}
+  r: {type: weld, parent: b.tip, child: bob}
+loads:
+  hit: {type: force, frame: b.root, law: table, table: [[0.1, 0, 0, 0], [0.11, 0, 33, 0], [0.12, 0, 0, 0]]}
+)");
+}
+
 }  // namespace
 }  // namespace withy::study

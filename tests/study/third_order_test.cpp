@@ -69,17 +69,19 @@ TEST(ThirdOrderTerms, OfATwistedBodyThatBendsAreThoseOfHalfTheAngleSquared) {
   EXPECT_EQ(beam.share(0, 1.2), 0) << "a shaft that does not bend turns right at any angle";
 }
 
-/// A beam of which modes move the root, so that it has no exact kinematics, under a force and a moment about its axis at
-/// its tip, as of a spring that is wound up.
+/// A beam under a force and a moment about its axis at its tip, as of a spring that is wound up: by a rod of exact
+/// kinematics its tip comes to rest at 0.0499 m, `quadratic` says 0.0578. Nothing is exact beside a plate, which rests.
 SceneValues twisted_beam(const std::string& formulation, double torque) {
   SceneValues values = SceneValues::parse(R"(format: withy/1
 gravity: [0, 0, 0]
 time: {end: 1, output: 0.02}
 integrator: {name: radau, rtol: 1e-6}
 bodies:
-  b: {type: beam, length: 1, mass_per_length: 1, damping_ratio: 0.3, bending_y: {stiffness: 20, modes: 3, family: orthogonal-polynomials}, bending_z: {stiffness: 20, modes: 3, family: pinned-free}, torsion: {stiffness: 1, inertia: 0.01, modes: 3, family: orthogonal-polynomials}}
+  b: {type: beam, length: 1, mass_per_length: 1, damping_ratio: 0.3, bending_y: {stiffness: 20, modes: 3, family: orthogonal-polynomials}, bending_z: {stiffness: 20, modes: 3, family: orthogonal-polynomials}, torsion: {stiffness: 1, inertia: 0.01, modes: 3, family: orthogonal-polynomials}}
   arm: {type: rigid, mass: 0.1, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+  p: {type: plate, length: 0.1, width: 0.1, mass_per_area: 1, stiffness: 10}
 hinges:
+  rest: {type: weld, parent: world, child: p}
   r: {type: weld, parent: world, child: b}
   a: {type: weld, parent: b.tip, child: arm}
 loads:
