@@ -63,6 +63,7 @@ Json turn_json(const study::TurningModes& turn) {
     j["multiblade"] = {{"blades", turn.blades->blades},
                        {"change", turn.blades->change},
                        {"modes", exponents_json(turn.blades->modes)}};
+  if (!turn.blade_problem.empty()) j["blade_problem"] = turn.blade_problem;
   return j;
 }
 
