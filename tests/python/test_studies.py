@@ -291,6 +291,17 @@ def test_a_scene_is_set_while_others_study_it():
     assert done.returncode == 0, done.stderr
 
 
+def test_the_studies_of_the_documentation_run(monkeypatch):
+    monkeypatch.chdir(SCENES.parent)
+    text = (SCENES.parent / "docs/python.md").read_text().partition("## Studies")[2]
+    names = {}
+    exec(compile(text.partition("```python\n")[2].partition("```")[0], "docs/python.md", "exec"), names)
+    assert names["bent"]["converged"] and names["linear"]["A"].shape == (len(names["linear"]["states"]),) * 2
+    assert names["loop"]["margins"]["stable"] and len(names["gain"]) == len(names["phase"])
+    assert names["driven"]["status"] == "completed" and len(names["driven"]["drives"]["shoulder.0"]["effort"]) == 41  # the outputs of the scene
+    assert names["pendulum"].bodies["rod"]["center_of_mass"][1] == pytest.approx(-0.5226, abs=1e-3)
+
+
 def plainly(value):
     """As the program prints it: what is not finite is null."""
     if isinstance(value, dict):
