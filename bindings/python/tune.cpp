@@ -2,14 +2,12 @@
 
 #include <pybind11/stl.h>
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "withy/bindings/python/bindings.hpp"
 #include "withy/bindings/python/followed.hpp"
 #include "withy/campaign/tune_files.hpp"
-#include "withy/results/json_text.hpp"
 
 namespace withy::python {
 namespace {
@@ -40,7 +38,7 @@ py::tuple tune(const host::Scene& scene, campaign::TuneQuestion question, const 
     const std::string text = change.text();
     set.append(py::make_tuple(change.path, text.substr(change.path.size() + 1)));  // behind "path="
   }
-  return py::make_tuple(json_line(campaign::tune_json(result)), at_times(result.data.times), columns, set);
+  return py::make_tuple(campaign::tune_json_line(result), at_times(result.data.times), columns, set);
 }
 
 }  // namespace
