@@ -37,14 +37,9 @@ class MeasuredReader {
   }
 
   Measured read() {
-    std::string text;
-    try {
-      text = read_bytes(wish_.file);
-    } catch (const std::system_error& e) {
-      problems_.emplace_back(e.what());
-      return data_;
-    }
-    CsvRows rows(text);
+    const std::optional<std::string> text = wish_.text ? wish_.text : text_of_file();
+    if (!text) return data_;
+    CsvRows rows(*text);
     if (const std::string wrong = rows.head_problem(); !wrong.empty()) {
       problem(1, 1, wrong);
       return data_;
@@ -64,6 +59,15 @@ class MeasuredReader {
   }
 
  private:
+  std::optional<std::string> text_of_file() {
+    try {
+      return read_bytes(wish_.file);
+    } catch (const std::system_error& e) {
+      problems_.emplace_back(e.what());
+      return {};
+    }
+  }
+
   /// Of what is wrong in the rows, the first are told.
   void problem(std::size_t line, std::size_t column, const std::string& message) {
     constexpr std::size_t most = 10;

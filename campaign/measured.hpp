@@ -2,6 +2,7 @@
 /// Measured data: times and results of a test, that runs are compared with.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct MeasuredWish {
   std::vector<std::string> deviations;  ///< "tip.x=0.1 mm": standard deviations of the measurement; bare numbers are SI
   double from = 0;                      ///< time [s] of the initial state
   double end = 0;                       ///< time [s] at which the scene ends
+  std::optional<std::string> text = {};  ///< of the file, which is then not read: its name stands for it in messages
 };
 
 /// Reads a CSV file with a head as `t[s],tip.x[mm],shoulder[deg]`: names of results in any unit that measures them, in

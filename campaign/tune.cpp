@@ -275,8 +275,10 @@ TuneResult tune(const study::Prepared& scene, Registry& registry, const TuneQues
   std::vector<TunedValue> tuned = read_tuned(question.parameters, scene, registry, problems);
   const ResultColumns results(scene.model(), *scene.equations, scene.scene.outputs);
   const double end = scene.scene.end.value_or(std::numeric_limits<double>::infinity());
-  Measured data = read_measured({question.data, question.outputs, question.deviations, scene.scene.initial.time, end},
-                                results.columns(), problems);
+  if (question.starts == 0) problems.emplace_back("starts: got 0; need at least 1");
+  Measured data = read_measured(
+      {question.data, question.outputs, question.deviations, scene.scene.initial.time, end, question.text},
+      results.columns(), problems);
   if (problems.empty() && data.count() <= tuned.size())
     problems.push_back(fmt::format("{}: {} measured values; need more than the {} parameters", question.data,
                                    data.count(), tuned.size()));

@@ -16,6 +16,7 @@ namespace withy::campaign {
 struct TuneQuestion {
   std::vector<std::string> parameters;  ///< as read_tuned takes them
   std::string data;                     ///< file
+  std::optional<std::string> text;      ///< MeasuredWish::text
   std::vector<std::string> outputs;     ///< MeasuredWish::outputs
   std::vector<std::string> deviations;  ///< MeasuredWish::deviations
   /// Searches: from the scene's values, the others from the best of ten times as many points drawn within the bounds,

@@ -104,6 +104,8 @@ Json tune_json(const TuneResult& result) {
   return j;
 }
 
+std::string tune_json_line(const TuneResult& result) { return json_line(tune_json(result)); }
+
 std::string tune_csv(const TuneResult& result) {
   std::vector<Column> head = {{"t", "s"}};
   for (const MeasuredColumn& c : result.data.columns)

@@ -14,6 +14,8 @@ namespace withy::campaign {
 
 /// What `withy tune --json` prints.
 nlohmann::ordered_json tune_json(const TuneResult& result);
+/// The same on one line, for callers that read it themselves.
+std::string tune_json_line(const TuneResult& result);
 /// Parameters, residuals, what is not determined, how the search went.
 std::string tune_text(const TuneResult& result, const std::string& title);
 /// A line a time: of each column what was measured, the scene's own run and the fitted one.

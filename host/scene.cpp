@@ -4,9 +4,11 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "withy/core/equations/branch_equations.hpp"
 #include "withy/host/names.hpp"
+#include "withy/host/run_result.hpp"
 #include "withy/results/certificate_json.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/recorded_run.hpp"
@@ -14,7 +16,6 @@
 #include "withy/scene/document.hpp"
 #include "withy/scene/scene_values.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/run.hpp"
 
 namespace withy::host {
 namespace {
@@ -106,33 +107,39 @@ std::shared_ptr<const study::Prepared> Scene::prepare() const {
   return std::make_shared<const study::Prepared>(std::move(prepared));
 }
 
-Result Scene::run(const Follow& follow) const {
-  const std::shared_ptr<const study::Prepared> prepared = prepare();
-  study::check_integrator(*prepared);
+RunResult run_result(const study::Prepared& prepared, Registry& registry, study::RunSettings settings) {
+  study::check_integrator(prepared);
   Result result;
   FlatRecorder recorder(result);
-  RunTable table(*prepared, recorder);
-  study::RunSettings settings;
-  settings.control = {follow.interrupted, follow.progress};
-  const bool seen = !prepared->escalates();
+  RunTable table(prepared, recorder);
+  const bool seen = !prepared.escalates();
   if (seen) settings.seen = &table.seen();
-  settings.output = [&](const State& state, std::size_t rung) {
+  settings.output = [&, also = std::move(settings.output)](const State& state, std::size_t rung) {
     if (seen) {
       table.add_seen(state);
     } else {
       table.add(state, rung);
     }
+    if (also) also(state, rung);
   };
   std::vector<OutputStatistics> statistics;
   settings.statistics = &statistics;
-  const auto [summary, certificate] = study::run(*prepared, library().registry(), settings);
+  auto [summary, certificate] = study::run(prepared, registry, settings);
   result.status = withy::name(summary.status);
   result.message = summary.message;
-  nlohmann::ordered_json json = run_json(prepared->scene, summary, certificate);
+  nlohmann::ordered_json json = run_json(prepared.scene, summary, certificate);
   if (!statistics.empty()) json["outputs"] = statistics_json(statistics);
   result.json = json_line(json);
-  if (summary.status == RunStatus::completed && !summary.message.empty()) library().log(summary.message);
-  return result;
+  return {std::move(result), std::move(summary)};
+}
+
+Result Scene::run(const Follow& follow) const {
+  const std::shared_ptr<const study::Prepared> prepared = prepare();
+  study::RunSettings settings;
+  settings.control = {follow.interrupted, follow.progress};
+  RunResult run = run_result(*prepared, library().registry(), std::move(settings));
+  if (run.summary.status == RunStatus::completed && !run.summary.message.empty()) library().log(run.summary.message);
+  return std::move(run.result);
 }
 
 std::vector<double> Result::column(std::string_view name) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "withy/host/library.hpp"
+#include "withy/host/questions.hpp"
 #include "withy/scene/scene_error.hpp"
 
 namespace withy::study {
@@ -36,6 +37,19 @@ struct Result {
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
   /// The numbers of a column. \throws std::out_of_range with the nearest name where there is none of this.
   [[nodiscard]] std::vector<double> column(std::string_view name) const;
+};
+
+/// What the motors of driven hinges would have to give.
+struct Inverse {
+  /// The effort on one driven speed, at the times of the outputs.
+  struct Drive {
+    Port effort_on;                    ///< name of the speed, unit of the effort: "N m" or "N"
+    std::vector<double> effort, rate;  ///< [N m, N], [rad/s, m/s]
+  };
+  std::string json;           ///< what the program prints with `--json`: peaks, rms, power and work of each drive
+  std::vector<double> times;  ///< [s]
+  std::vector<Drive> drives;
+  Result run;
 };
 
 /// A scene as a value: a copy is a scene of its own. Functions that need it made report every problem of the text and
@@ -110,6 +124,10 @@ class Scene {
                                    const Axes& axes, const Follow& follow, std::optional<double> seconds) const;
   /// Modes about the steady state of the scene's initial state, hinges in `lock` held.
   [[nodiscard]] std::string modes(const std::vector<std::string>& lock = {}, const Follow& follow = {}) const;
+  /// The same of what is wished: an element of the list `runs` that the command has, with `effective_mass` and
+  /// `damping` where they are asked for.
+  [[nodiscard]] std::string modes(const std::vector<std::string>& lock, const Follow& follow,
+                                  const ModesWish& wish) const;
   /// The linear model of small motions about the scene's initial state: A, B, C, D with names and units.
   /// \param inputs loads of the type input, hinges whose efforts are inputs, or "all"; empty: every input load or,
   /// where there is none, every hinge \param outputs names or their beginnings; empty: the scene's, or all \param lock
@@ -118,6 +136,19 @@ class Scene {
   [[nodiscard]] std::string linearize(const std::vector<std::string>& inputs = {},
                                       const std::vector<std::string>& outputs = {},
                                       const std::vector<std::string>& lock = {}) const;
+  /// The same at a place.
+  [[nodiscard]] std::string linearize(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
+                                      const std::vector<std::string>& lock, const Place& place) const;
+  /// Transfer function, poles, zeros, peaks and margins from one input to one output. \throws SimulationStopped as
+  /// linearize; study::InputError too where the output does not feel the input
+  [[nodiscard]] std::string response(const ResponseWish& wish, const std::vector<std::string>& lock = {},
+                                     const Place& place = {}) const;
+  /// The state that stays as it is, at rest or spinning steadily; "converged" is false and "message" says why where
+  /// none is found. \throws SimulationStopped where something is not finite
+  [[nodiscard]] std::string equilibrium(const std::vector<std::string>& lock = {}, const Place& place = {}) const;
+  /// Simulates to the end of the scene and finds what its motions take. A bad end is a status.
+  /// \param motion a table with columns t[s] and hinge coordinates in the place of the scene's motions
+  [[nodiscard]] Inverse inverse(const Given& motion = {}, const Follow& follow = {}) const;
 
   [[nodiscard]] const Library& library() const;
   /// Made and compiled, for Simulation, Equations and the functions of `withy::study`.

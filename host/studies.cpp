@@ -1,18 +1,15 @@
 /// \file
-/// Studies of a scene, as JSON text.
+/// Studies of whole runs of a scene, as JSON text.
 #include <nlohmann/json.hpp>
 
+#include "withy/host/asked_scene.hpp"
 #include "withy/host/scene.hpp"
-#include "withy/host/stopped.hpp"
 #include "withy/results/advice_json.hpp"
 #include "withy/results/advice_text.hpp"
 #include "withy/results/comparison_report.hpp"
 #include "withy/results/json_text.hpp"
-#include "withy/results/linear_files.hpp"
-#include "withy/results/modes_files.hpp"
 #include "withy/results/scene_edit.hpp"
 #include "withy/results/trade_files.hpp"
-#include "withy/scene/asked_outputs.hpp"
 #include "withy/study/candidates.hpp"
 #include "withy/study/comparison.hpp"
 #include "withy/study/left_out.hpp"
@@ -20,8 +17,6 @@
 
 namespace withy::host {
 namespace {
-
-study::Control control_of(const Follow& follow) { return {follow.interrupted, follow.progress}; }
 
 /// The axes asked for, those of `usual` where nothing is.
 study::Axes axes_of(const Scene::Axes& asked, study::Axes usual) {
@@ -35,15 +30,6 @@ study::Axes axes_of(const Scene::Axes& asked, study::Axes usual) {
   take(asked.tolerances, usual.tolerances);
   study::check_axes(usual);
   return usual;
-}
-
-/// The scene with those outputs that names say, made.
-std::shared_ptr<const study::Prepared> with_outputs(const Scene& scene, const std::vector<std::string>& names) {
-  std::shared_ptr<const study::Prepared> base = scene.prepare();
-  if (names.empty()) return base;
-  SceneValues values = base->values;
-  ask_outputs(values, names);
-  return std::make_shared<const study::Prepared>(study::prepare(std::move(values), scene.library().registry()));
 }
 
 std::string advice_of(const study::Prepared& prepared, const study::Outputs& outputs, const study::Accuracy& accuracy,
@@ -105,28 +91,6 @@ std::string Scene::advise(const std::string& accuracy, const std::vector<std::st
   study::Evaluator evaluator(*base, library().registry(), measured, control_of(follow));
   const study::Advice advice = study::advise(evaluator, candidates, asked, {}, seconds);
   return advice_of(*base, measured, asked, advice, evaluator);
-}
-
-std::string Scene::modes(const std::vector<std::string>& lock, const Follow& follow) const {
-  const std::shared_ptr<const study::Prepared> base = prepare();
-  const study::ModesOf found = study::sweep_modes(
-      base->values, library().registry(), [](const study::Prepared& prepared) { return prepared.scene.initial; },
-      {lock, {}}, {}, false, {}, control_of(follow));
-  return json_line(modes_json(found));
-}
-
-std::string Scene::linearize(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
-                             const std::vector<std::string>& lock) const {
-  const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
-  const study::Configuration at(*base, base->scene.initial, {lock, {}});
-  try {
-    return json_line(linear_model_json(at, study::linear_model(at, {inputs, outputs})));
-  } catch (const std::domain_error& e) {
-    // A law may also fail where it is differenced.
-    const study::NotFinite found = study::not_finite(at, at.state());
-    const char* status = found.failed ? "load-failed" : found.text.empty() ? "singular" : "diverged";
-    throw SimulationStopped(status, found.text.empty() ? e.what() : found.text, base->scene.initial.time);
-  }
 }
 
 }  // namespace withy::host

@@ -8,7 +8,9 @@
 #include <numbers>
 
 #include "withy/results/blade_branches.hpp"
+#include "withy/results/effective_mass_files.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/mounted_damping_files.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/modes_page.hpp"
 #include "withy/results/report/report_page.hpp"
@@ -61,6 +63,7 @@ Json turn_json(const study::TurningModes& turn) {
     j["multiblade"] = {{"blades", turn.blades->blades},
                        {"change", turn.blades->change},
                        {"modes", exponents_json(turn.blades->modes)}};
+  if (!turn.blade_problem.empty()) j["blade_problem"] = turn.blade_problem;
   return j;
 }
 
@@ -213,6 +216,8 @@ Json modes_study_json(const std::string& scene, const study::Sweep& sweep, const
     j["runs"].push_back(modes_json(found.runs[i]));
     j["runs"].back()["against_next"] = against_json(found.against[i]);
   }
+  if (found.masses) j["effective_mass"] = effective_mass_json(*found.masses);
+  if (found.damping) j["damping"] = mounted_damping_json(*found.damping);
   return j;
 }
 

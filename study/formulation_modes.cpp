@@ -2,10 +2,38 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include "withy/study/input_error.hpp"
+
 namespace withy::study {
+namespace {
+
+/// What is asked for one configuration beside its modes, about the state that these are about.
+void look_further(const Prepared& base, Registry& registry, const ModesQuestion& question, ModesFound& found) {
+  const ModesAt& at = found.runs.front().points.front();
+  if (!at.problem.empty() || !(question.masses || !question.damp.empty())) return;
+  Configuration c(base, question.start ? question.start(base) : base.scene.initial, question.holding);
+  if (at.steady) c.set_state(at.steady->steady.state);
+  if (question.masses) found.masses = effective_masses(c);
+  if (!question.damp.empty()) found.damping = mounted_damping(c, registry, question.damp);
+}
+
+}  // namespace
+
+void check_question(const ModesQuestion& question) {
+  if (question.sweep.none() && question.formulations.empty()) return;
+  for (const auto& [asked, option] : {std::pair{question.masses, "effective-mass"}, {!question.damp.empty(), "damp"}}) {
+    if (asked)
+      throw OptionError(option,
+                        "of one configuration, in the scene's formulation: leave out --sweep and "
+                        "--formulations, or --set formulation=ID");
+  }
+}
 
 ModesFound find_modes(const Prepared& base, Registry& registry, const ModesQuestion& question,
                       const std::function<Control(const std::string& formulation)>& control) {
+  check_question(question);
   std::vector<std::string> formulations = question.formulations;
   if (formulations.empty()) formulations.push_back(base.scene.formulation_name);
   ModesFound found;
@@ -16,12 +44,13 @@ ModesFound find_modes(const Prepared& base, Registry& registry, const ModesQuest
     found.runs.push_back(sweep_modes(values, registry, question.start, question.holding, question.sweep, question.as_is,
                                      question.wish, sweeping));
     found.against.emplace_back();
-    if (question.sweep.none() && !sweeping.stop())
+    if (question.sweep.none() && question.compared > 0 && !sweeping.stop())
       found.against.back() =
           frequencies_against_next(found.runs.back(), values, registry, question.start, question.holding,
                                    question.as_is, question.compared, control(formulation));
     found.interrupted = sweeping.stop();
   }
+  if (!found.interrupted) look_further(base, registry, question, found);
   return found;
 }
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "withy/study/against_next.hpp"
+#include "withy/study/effective_mass.hpp"
+#include "withy/study/mounted_damping.hpp"
 
 namespace withy::study {
 
@@ -17,18 +19,26 @@ struct ModesQuestion {
   Holding holding;
   StartState start;  ///< empty: a scene's initial state
   TurningWish wish;
-  bool as_is = false;        ///< about the state as it is given, steady or not
-  std::size_t compared = 6;  ///< lowest frequencies that are set against the next model up, at one configuration
+  bool as_is = false;  ///< about the state as it is given, steady or not
+  /// Lowest frequencies that are set against the next model up, at one configuration; 0: none.
+  std::size_t compared = 6;
+  bool masses = false;       ///< effective masses are found, of one configuration in the scene's formulation
+  std::vector<double> damp;  ///< ratios that its lowest vibrations shall have; empty: no damping is found
 };
+/// Effective masses and damping are of one configuration. \throws OptionError where a sweep or formulations go with
+/// them
+void check_question(const ModesQuestion& question);
 
 struct ModesFound {
   std::vector<ModesOf> runs;                        ///< one a formulation
   std::vector<std::optional<AgainstNext>> against;  ///< of each; none along a sweep
   bool interrupted = false;
+  std::optional<EffectiveMasses> masses;  ///< none where nobody asked or there are no modes
+  std::optional<MountedDamping> damping;  ///< the same
 };
 
 /// \param control of the study of a formulation
-/// \throws SceneError, InputError, PluginError
+/// \throws SceneError, InputError, PluginError; std::domain_error as effective_masses and mounted_damping
 ModesFound find_modes(const Prepared& base, Registry& registry, const ModesQuestion& question,
                       const std::function<Control(const std::string& formulation)>& control);
 

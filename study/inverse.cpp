@@ -1,6 +1,7 @@
 #include "withy/study/inverse.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/study/input_error.hpp"
@@ -24,6 +25,14 @@ InverseStudy::InverseStudy(const Prepared& prepared)
     throw InputError(prepared.scene.file +
                      ": no hinge is driven; give the scene motions, or --motion FILE with columns "
                      "t[s] and hinge coordinates");
+}
+
+RunSettings InverseStudy::run_settings(Control control) {
+  RunSettings settings;
+  settings.look_beyond = false;
+  settings.output = [this](const State& state, std::size_t) { enter(state); };
+  settings.control = std::move(control);
+  return settings;
 }
 
 void InverseStudy::enter(const State& state) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/study/prepared.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy::study {
 
@@ -32,6 +32,9 @@ class InverseStudy {
   /// `prepared` must outlive it. \throws InputError where no hinge is driven.
   explicit InverseStudy(const Prepared& prepared);
   void enter(const State& state);
+  /// Of a run that enters its outputs here. Accelerations of the next model up tell nothing of efforts: it is not
+  /// looked at. The settings refer to this.
+  [[nodiscard]] RunSettings run_settings(Control control);
 
   [[nodiscard]] const std::vector<Drive>& drives() const { return drives_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }  ///< [s]

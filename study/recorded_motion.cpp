@@ -165,8 +165,10 @@ std::string text_of(const std::string& file) {
 }  // namespace
 
 RecordedMotion read_recorded_motion(const std::filesystem::path& path, const Model& model) {
-  const std::string file = path.string();
-  const std::string text = text_of(file);
+  return parse_recorded_motion(text_of(path.string()), path.string(), model);
+}
+
+RecordedMotion parse_recorded_motion(const std::string& text, const std::string& file, const Model& model) {
   if (text.empty()) throw InputError(file + ": empty; need a head as t[s],shoulder[rad],elbow[rad]");
   CsvRows rows(text);
   if (const std::string problem = rows.head_problem(); !problem.empty())
@@ -193,6 +195,13 @@ SceneValues led_by(SceneValues values, const RecordedMotion& motion) {
     if (values.find(start) != nullptr) values.set(start, Value::map({}), origin);
   }
   return values;
+}
+
+LedScene led_scene(const Prepared& prepared, const MotionWish& wish, Registry& registry) {
+  if (wish.file.empty() && !wish.text) return {prepared, {}};
+  const RecordedMotion motion = wish.text ? parse_recorded_motion(*wish.text, wish.file, prepared.model())
+                                          : read_recorded_motion(wish.file, prepared.model());
+  return {prepare(led_by(prepared.values, motion), registry), motion.ignored};
 }
 
 }  // namespace withy::study

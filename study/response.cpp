@@ -151,15 +151,25 @@ std::pair<double, double> ends(const ResponseQuestion& question, const TransferF
   return {low, high};
 }
 
+/// What a command line refuses before it is read, for those who ask otherwise.
+void check(const ResponseQuestion& question) {
+  constexpr int least = 5, most = 100000;
+  if (question.per_decade < least || question.per_decade > most)
+    throw OptionError("points", fmt::format("got {}; need {} to {} a decade", question.per_decade, least, most));
+  if (question.reduce && *question.reduce < 0)
+    throw OptionError("reduce", fmt::format("got {}; need a number of states", *question.reduce));
+}
+
 }  // namespace
 
 Response response(const Configuration& c, const ResponseQuestion& question) {
+  check(question);
   Response r;
   r.model = model_for(c, question, r.opened);
   const LinearSystem& s = r.model.system;
   const ZerosAndGain found = zeros(s);
   if (found.gain == 0)
-    throw std::domain_error(
+    throw Unfelt(
         r.opened ? fmt::format("the loop of '{0}' is open at this state: what it measures does not feel its effort, or "
                                "'{0}' or a load before it is at a limit",
                                r.model.inputs[0].name)

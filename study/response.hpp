@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,14 @@ struct ResponseQuestion {
   std::string input;
   std::string output;              ///< as Ports::outputs, of one component; empty of an opened loop
   std::optional<double> from, to;  ///< [Hz]; nothing: a decade around poles and zeros
-  int per_decade = 100;
-  std::optional<int> reduce;  ///< states of a reduced system
+  int per_decade = 100;            ///< 5 to 100000
+  std::optional<int> reduce;       ///< states of a reduced system, at least none
+};
+
+/// An output that nothing of the input reaches: of these two there is no response.
+class Unfelt : public std::domain_error {
+ public:
+  using std::domain_error::domain_error;
 };
 
 struct Response {
@@ -38,7 +45,7 @@ struct Response {
   double reduction_error = 0;  ///< greatest difference of the reduced system over `values`
 };
 
-/// \throws InputError; std::domain_error where the mass matrix is singular or the output does not feel the input.
+/// \throws InputError; std::domain_error where the mass matrix is singular; Unfelt.
 Response response(const Configuration& configuration, const ResponseQuestion& question);
 
 }  // namespace withy::study

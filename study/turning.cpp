@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "withy/core/analysis/between_instants.hpp"
@@ -141,6 +142,16 @@ std::string not_repeating(const Configuration& c, const State& steady, const Tur
 }
 
 }  // namespace
+
+TurningWish turning_wish(bool floquet, const std::optional<std::vector<std::string>>& blades, double period) {
+  if (!(period >= 0) || !std::isfinite(period))
+    throw OptionError("period", fmt::format("got {:g} s; need a number above 0", period));
+  TurningWish wish{.floquet = floquet, .blades = blades.has_value(), .names = {}, .period = period};
+  if (blades)
+    std::copy_if(blades->begin(), blades->end(), std::back_inserter(wish.names),
+                 [](const std::string& name) { return name != "auto"; });
+  return wish;
+}
 
 TurningModes turning_modes(const Configuration& c, const State& steady, const TurningWish& wish) {
   TurningModes result;

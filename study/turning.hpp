@@ -64,6 +64,10 @@ struct TurningWish {
   double period = 0;               ///< [s]; 0: found from the rates
 };
 
+/// \param blades names of equal blades, `auto` for those that are found; nothing: they are not asked for
+/// \param period [s]; 0: found from the rates \throws OptionError where that is negative or not finite
+TurningWish turning_wish(bool floquet, const std::optional<std::vector<std::string>>& blades, double period);
+
 /// What a turn says about small motions about a steady state of the configuration.
 TurningModes turning_modes(const Configuration& configuration, const State& steady, const TurningWish& wish);
 

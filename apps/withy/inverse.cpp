@@ -17,19 +17,10 @@ struct InverseArguments : SceneArguments, OutputArguments {
   std::string motion;  ///< file with hinge coordinates over time; empty: the scene's motions
 };
 
-/// The scene with the motions of the file in the place of its own. \param ignored columns that are left out
-study::Prepared led_scene(const Engine& engine, const std::string& file, std::vector<std::string>& ignored) {
-  if (file.empty()) return engine.prepared();
-  const study::RecordedMotion motion = study::read_recorded_motion(file, engine.model());
-  ignored = motion.ignored;
-  return study::prepare(study::led_by(engine.prepared().values, motion), engine.registry());
-}
-
 ExitStatus inverse(const InverseArguments& given) {
   InverseArguments arguments = given;
   const Engine engine(arguments);
-  std::vector<std::string> ignored;
-  const study::Prepared led = led_scene(engine, arguments.motion, ignored);
+  const auto [led, ignored] = study::led_scene(engine.prepared(), {arguments.motion, {}}, engine.registry());
   study::InverseStudy study(led);
   if (arguments.out.empty()) arguments.out = default_folder(arguments, "inverse");
   const std::filesystem::path folder = arguments.out;
@@ -37,10 +28,7 @@ ExitStatus inverse(const InverseArguments& given) {
   content.emplace_back("inverse.svg");
   const Provenance provenance = provenance_of(led.scene, engine.plugins());
   const auto taken = take_folder(arguments, "inverse", provenance, content);
-  study::RunSettings settings;
-  settings.look_beyond = false;
-  settings.control = run_control(led.scene.formulation_name);
-  settings.output = [&](const State& state, std::size_t) { study.enter(state); };
+  const study::RunSettings settings = study.run_settings(run_control(led.scene.formulation_name));
   const RunSummary summary = record_run(folder, led, engine.registry(), provenance, settings).run.summary;
   const Scene& scene = led.scene;
   const std::string title = led.title() + ": inverse dynamics";

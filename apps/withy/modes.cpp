@@ -30,84 +30,46 @@ struct ModesArguments : ConfigurationArguments, OutputArguments {
   double period = 0;                               ///< [s]; 0: found from the rates
 };
 
-study::TurningWish wish_of(const ModesArguments& arguments) {
-  study::TurningWish wish;
-  wish.floquet = arguments.floquet;
-  wish.blades = arguments.blades.has_value();
-  if (wish.blades) {
-    for (const std::string& name : *arguments.blades) {
-      if (name != "auto") wish.names.push_back(name);
-    }
-  }
-  wish.period = arguments.period;
-  return wish;
-}
-
-study::ModesFound found(const Engine& engine, const ModesArguments& arguments, const study::Sweep& sweep) {
+/// What is asked but for what the scene has to be there for: what is held, and where.
+study::ModesQuestion question_of(const ModesArguments& arguments) {
   study::ModesQuestion question;
   question.formulations = arguments.formulations;
-  question.sweep = sweep;
-  question.holding = study::read_holding(engine.model(), arguments.lock, arguments.spin);
+  question.sweep = study::parse_sweep(arguments.sweep, "sweep");
   question.start = [&](const study::Prepared& prepared) { return read_state(prepared, arguments.state); };
-  question.wish = wish_of(arguments);
+  question.wish = study::turning_wish(arguments.floquet, arguments.blades, arguments.period);
   question.as_is = arguments.as_is;
   question.compared = arguments.count;
-  return find_modes(engine.prepared(), engine.registry(), question, study_control);
-}
-
-/// The steady state that the modes are about.
-study::Configuration steady_configuration(const Engine& engine, const ModesArguments& arguments,
-                                          const study::ModesAt& at) {
-  study::Configuration c = configuration_of(engine, arguments);
-  if (at.steady) c.set_state(at.steady->steady.state);
-  return c;
-}
-
-/// What is asked for one configuration beside its modes.
-void require_one_configuration(const ModesArguments& arguments, const study::Sweep& sweep) {
-  if (sweep.none() && arguments.formulations.empty()) return;
-  for (const auto& [asked, option] :
-       {std::pair{arguments.masses, "--effective-mass"}, {!arguments.damp.empty(), "--damp"}}) {
-    if (asked)
-      throw InputError(std::string(option) +
-                       " is of one configuration, in the scene's formulation: leave out --sweep and --formulations, or "
-                       "--set formulation=ID");
-  }
+  question.masses = arguments.masses;
+  question.damp = study::read_damping_ratios(arguments.damp);
+  check_question(question);
+  return question;
 }
 
 ExitStatus modes(const ModesArguments& arguments) {
-  const study::Sweep sweep = study::parse_sweep(arguments.sweep, "sweep");
-  require_one_configuration(arguments, sweep);
-  const std::vector<double> ratios = study::read_damping_ratios(arguments.damp);
-  if (!arguments.write.empty() && ratios.empty()) throw InputError("--write writes what --damp finds: give that too");
+  study::ModesQuestion question = question_of(arguments);
+  if (!arguments.write.empty() && question.damp.empty())
+    throw InputError("--write writes what --damp finds: give that too");
   const Engine engine(arguments);
   check_write(arguments.write, arguments, engine);
   const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
                                   {"modes.json", "modes.csv", "modes.svg", "blades.csv", "blades.svg", report_name});
-  const study::ModesFound all = found(engine, arguments, sweep);
+  question.holding = study::read_holding(engine.model(), arguments.lock, arguments.spin);
+  const study::ModesFound all = find_modes(engine.prepared(), engine.registry(), question, study_control);
   if (all.interrupted) return ExitStatus::interrupted;
-  const study::ModesAt& first = all.runs.front().points.front();
-  std::optional<study::EffectiveMasses> masses;
-  std::optional<study::MountedDamping> damping;
-  if (first.problem.empty() && arguments.masses)
-    masses = study::effective_masses(steady_configuration(engine, arguments, first));
-  if (first.problem.empty() && !ratios.empty())
-    damping = study::mounted_damping(steady_configuration(engine, arguments, first), engine.registry(), ratios);
-  nlohmann::ordered_json j = modes_study_json(arguments.scene, sweep, all);
-  if (masses) j["effective_mass"] = effective_mass_json(*masses);
-  if (damping) j["damping"] = mounted_damping_json(*damping);
+  const study::Sweep& sweep = question.sweep;
+  const nlohmann::ordered_json j = modes_study_json(arguments.scene, sweep, all);
   if (!arguments.out.empty())
     write_modes(arguments.out, all.runs, j, "Modes of " + arguments.scene, sweep, arguments.count);
   if (arguments.json) {
     print(json_text(j));
   } else {
     print(modes_study_text(arguments.scene, sweep, all, arguments.count, arguments.poles));
-    if (masses) print('\n' + effective_mass_text(*masses));
-    if (damping) print('\n' + mounted_damping_text(*damping));
+    if (all.masses) print('\n' + effective_mass_text(*all.masses));
+    if (all.damping) print('\n' + mounted_damping_text(*all.damping));
     if (!arguments.out.empty()) print(folder_text(arguments.out));
   }
-  if (damping && !arguments.write.empty()) {  // once all is told that was found
-    write_changed(engine.prepared().values, damping->changes, arguments.write, engine.registry());
+  if (all.damping && !arguments.write.empty()) {  // once all is told that was found
+    write_changed(engine.prepared().values, all.damping->changes, arguments.write, engine.registry());
     if (!arguments.json) print("\nwritten to " + arguments.write + '\n');
   }
   const std::vector<std::string> problems = study::modes_problems(all.runs, sweep);

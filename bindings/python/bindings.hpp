@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/host/library.hpp"
+#include "withy/host/scene.hpp"
 
 namespace withy::python {
 
@@ -42,8 +42,15 @@ inline Array numbers_given(const py::object& given, const char* what) {
   return Array(given);
 }
 
+/// A run as the package's Result takes it.
+py::tuple tuple_of(host::Result result);
+
 /// Libraries, scenes, their runs and studies.
 void bind_scene(py::module_& m);
+/// Modes, linear models, responses, steady states, what motions take.
+void bind_small_motions(py::class_<host::Scene>& scene);
+/// Fits to measured data.
+void bind_tune(py::class_<host::Scene>& scene);
 /// Plugins of the type `python` for a library.
 void admit_parts_in_python(Registry& registry);
 void bind_parts_in_python(py::module_& m);

@@ -95,4 +95,12 @@ auto followed(const py::object& progress, Act&& act) {
   }
 }
 
+/// Calls `act` without the interpreter, with a copy of the scene: another thread of Python may set values of the scene
+/// itself meanwhile.
+template <class Act>
+auto of_a_copy(const host::Scene& scene, const py::object& progress, Act&& act) {
+  const host::Scene own(scene);
+  return followed(progress, [&](const host::Follow& follow) { return act(own, follow); });
+}
+
 }  // namespace withy::python

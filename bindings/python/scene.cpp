@@ -21,20 +21,8 @@ using host::LibraryOptions;
 using host::Result;
 using host::Scene;
 
-/// Calls `act` without the interpreter, with a copy of the scene: another thread of Python may set values of the scene
-/// itself meanwhile.
-template <class Act>
-auto of_a_copy(const Scene& scene, const py::object& progress, Act&& act) {
-  const Scene own(scene);
-  return followed(progress, [&](const Follow& follow) { return act(own, follow); });
-}
-
 py::tuple run(const Scene& scene, const py::object& progress) {
-  Result result = of_a_copy(scene, progress, [](const Scene& own, const Follow& follow) { return own.run(follow); });
-  const auto rows = static_cast<py::ssize_t>(result.rows()), columns = static_cast<py::ssize_t>(result.columns.size());
-  const py::object cause = raised_by_load(result.message);
-  return py::make_tuple(result.status, result.message, names_of(result.columns), units_of(result.columns),
-                        array_of(std::move(result.values), {rows, columns}), result.json, cause ? cause : py::none());
+  return tuple_of(of_a_copy(scene, progress, [](const Scene& own, const Follow& follow) { return own.run(follow); }));
 }
 
 /// The table of a run as results.h5 has it.
@@ -70,6 +58,13 @@ Library open_library(std::vector<std::filesystem::path> plugins, const py::objec
 
 }  // namespace
 
+py::tuple tuple_of(Result result) {
+  const auto rows = static_cast<py::ssize_t>(result.rows()), columns = static_cast<py::ssize_t>(result.columns.size());
+  const py::object cause = raised_by_load(result.message);
+  return py::make_tuple(result.status, result.message, names_of(result.columns), units_of(result.columns),
+                        array_of(std::move(result.values), {rows, columns}), result.json, cause ? cause : py::none());
+}
+
 void bind_scene(py::module_& m) {
   py::class_<Library>(m, "Library")
       .def(py::init(&open_library), py::arg("plugins"), py::arg("log"))
@@ -81,8 +76,10 @@ void bind_scene(py::module_& m) {
   };
   using Names = std::vector<std::string>;
   m.def("write_hdf5", &write_hdf5);
-  py::class_<Scene>(m, "Scene")
-      .def_static("read", &Scene::read)
+  py::class_<Scene> scene(m, "Scene");
+  bind_small_motions(scene);
+  bind_tune(scene);
+  scene.def_static("read", &Scene::read)
       .def_static("parse", [](const Library& l, const std::string& text,
                               const std::string& name) { return Scene::parse(l, text, name); })
       .def_static("parse", [](const Library& l, const std::string& text, const std::string& name,
@@ -120,16 +117,7 @@ void bind_scene(py::module_& m) {
                                  seconds);
              });
            })
-      .def_property_readonly("values", [](const Scene& s) { return Scene(s).values(); })
-      .def("linearize",
-           [](const Scene& s, const Names& inputs, const Names& outputs, const Names& lock) {
-             return of_a_copy(s, py::none(), [&](const Scene& own, const Follow& /*it is short*/) {
-               return own.linearize(inputs, outputs, lock);
-             });
-           })
-      .def("modes", [](const Scene& s, const Names& lock, const py::object& progress) {
-        return of_a_copy(s, progress, [&](const Scene& own, const Follow& f) { return own.modes(lock, f); });
-      });
+      .def_property_readonly("values", [](const Scene& s) { return Scene(s).values(); });
 }
 
 }  // namespace withy::python

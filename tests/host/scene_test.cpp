@@ -96,6 +96,65 @@ TEST(HostedScene, has_the_linear_model_of_its_equations) {
   EXPECT_THROW(static_cast<void>(arm.linearize({"comand"})), std::runtime_error);
 }
 
+/// A bead on a spoke of a turntable, held by a spring: k/m is 25.
+Scene bead() {
+  return Scene::parse(library(), R"(format: withy/1
+bodies:
+  table: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  bead: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}
+  slide: {type: prismatic, axis: [1, 0, 0], parent: table, child: bead}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 50}}
+)");
+}
+
+TEST(HostedScene, is_looked_at_where_it_turns) {
+  const host::Place turning{{}, {"axle=3"}};
+  const json modes = json::parse(bead().modes({}, {}, {.place = turning}));
+  EXPECT_NEAR(modes["points"][0]["modes"][0]["frequency"], 4, 1e-9);
+  EXPECT_TRUE(modes.contains("against_next"));
+  const json linear = json::parse(bead().linearize({"slide"}, {"slide"}, {}, turning));
+  EXPECT_NEAR(linear["A"][1][0], -16, 1e-9);
+  EXPECT_NEAR(json::parse(bead().response({"slide", "slide", {}, {}, 100, {}}, {}, turning))["static_gain"], 1 / 32.0,
+              1e-9);
+  // The state of an equilibrium is a place for others; so is the text of any.
+  const json steady = json::parse(bead().equilibrium({}, turning));
+  EXPECT_TRUE(steady["converged"]);
+  const host::Place there{{"steady", steady["state"].dump()}, {}};
+  EXPECT_NEAR(json::parse(bead().linearize({"slide"}, {"slide"}, {"axle"}, there))["A"][1][0], -16, 1e-9);
+  EXPECT_THAT(
+      [] {
+        static_cast<void>(bead().equilibrium({}, {{"steady", "{hinges: {axel: {rate: [3]}}}"}, {}}));
+      },
+      testing::ThrowsMessage<SceneError>(HasSubstr("steady:1:11: /hinges/axel")));
+  EXPECT_THAT(
+      [] {
+        static_cast<void>(bead().response({"axle", "slide", {}, {}, 100, {}}));
+      },
+      testing::ThrowsMessage<std::runtime_error>(HasSubstr("does not feel")));
+}
+
+TEST(HostedScene, tells_what_its_motions_take) {
+  Scene scene = bead().set("time.end", 1).set("time.output", 0.1);
+  EXPECT_THROW(static_cast<void>(scene.inverse()), std::runtime_error) << "nothing is driven";
+  scene.set("hinges.axle", "{type: weld, parent: world, child: table}");
+  std::string table = "t,slide\n";
+  for (int i = 0; i <= 10; ++i) table += std::to_string(0.1 * i) + ',' + std::to_string(0.001 * i * i * i) + '\n';
+  const host::Inverse found = scene.inverse({"cubic", table});
+  EXPECT_EQ(json::parse(found.json)["status"], "completed");
+  EXPECT_EQ(found.run.status, "completed");
+  ASSERT_EQ(found.drives.size(), 1U);
+  const host::Inverse::Drive& drive = found.drives[0];
+  EXPECT_EQ(drive.effort_on.name, "slide.0");
+  EXPECT_EQ(drive.effort_on.unit, "N");
+  ASSERT_EQ(drive.effort.size(), found.times.size());
+  for (std::size_t i = 0; i < found.times.size(); ++i) {
+    const double t = found.times[i];
+    EXPECT_NEAR(drive.effort[i], 2 * 6 * t + 50 * t * t * t, 1e-7) << t;
+  }
+}
+
 TEST(HostedScene, reports_every_problem_with_its_place) {
   Scene scene = Scene::parse(library(), "format: withy/1\nbodies: {b: {type: rigd}}\nhinges: {}\n", "mine.yaml");
   scene.set("time.end", "soon");

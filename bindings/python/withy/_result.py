@@ -29,11 +29,16 @@ def unknown(what: str, name: object, known: list[str]) -> KeyError:
     return KeyError(f"no {what} {name!r}" + nearest(name, known))
 
 
+def name_in_csv(name: str) -> str:
+    """What results.csv, where brackets hold units alone, calls a column: ``link1.bending_y.1`` of
+    ``link1.bending_y[1]``."""
+    return name.replace("[", ".").replace("]", "")
+
+
 def places_of(names: list[str]) -> tuple[dict[str, int], dict[str, int]]:
-    """The place of each name in a list, and those of modal coordinates as results.csv, where brackets hold units alone,
-    calls them: ``link1.bending_y.1`` of ``link1.bending_y[1]``."""
+    """The place of each name in a list, and those of modal coordinates as results.csv calls them."""
     return ({name: i for i, name in enumerate(names)},
-            {name.replace("[", ".").replace("]", ""): i for i, name in enumerate(names) if "[" in name})
+            {name_in_csv(name): i for i, name in enumerate(names) if "[" in name})
 
 
 class _Units(dict[str, str]):

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Union
-
-import numpy
+from typing import TYPE_CHECKING, Any
 
 from . import _withy
 from ._library import as_list, library
 from ._parts import plain
 from ._result import Result, unknown
+from ._studies import Path, Progress, Studies, read_json
 from ._yaml import written
 
 if TYPE_CHECKING:
     from . import Equations
-
-Progress = Callable[[float, float], Any]
-Path = Union[str, "os.PathLike[str]"]
 
 
 def load(path: Path, plugins: Sequence[Path] = (), *, check: bool = True) -> Scene:
@@ -68,12 +64,6 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-def _read_json(text: str) -> dict[str, Any]:
-    """An object that the engine wrote."""
-    values: dict[str, Any] = json.loads(text)
-    return values
-
-
 class _Section(MutableMapping[str, Any]):
     """The parts of a scene by their names. What it gives can be looked at; assign anew, or use Scene.set(), to change it."""
 
@@ -105,7 +95,7 @@ class _Section(MutableMapping[str, Any]):
         return f"<{self._name}: {', '.join(self) or 'none'}>"
 
 
-class Scene:
+class Scene(Studies):
     """A scene: read, built in code, varied, run and studied. It can be copied and pickled.
 
     ``Scene()`` is empty: ``scene.bodies["boom"] = withy.beam(...)``; load() and loads() read one. What is set is checked
@@ -141,7 +131,7 @@ class Scene:
 
     def _values_now(self) -> dict[str, Any]:
         if self._values is None:
-            self._values = _read_json(self._made.values)
+            self._values = read_json(self._made.values)
         return self._values
 
     def _changing(self, section: str) -> dict[str, Any]:
@@ -286,84 +276,6 @@ class Scene:
         from . import Equations
 
         return Equations(self._with({} if formulation is None else {"formulation": formulation})._made, "")
-
-    def compare(self, formulations: Sequence[str] | None = None, reference: str = "quadratic", *,
-                outputs: Sequence[str] = (),
-                progress: Progress | None = None) -> dict[str, Any]:
-        """Runs several formulations: what ``withy compare --json`` prints, each run with its distance to the reference.
-
-        Args:
-            formulations: of ruthless, inconsistent, consistent and quadratic those that can treat the scene where left
-                out; "left_out" has the others, each with the reason.
-            outputs: what errors are measured on, as in `advise`; the usual ones where left out.
-
-        Raises:
-            SceneError: where the scene, or what is asked of it, cannot be.
-        """
-        return _read_json(self._made.compare(as_list(formulations or ()), reference, as_list(outputs), progress))
-
-    def trade(self, *, outputs: Sequence[str] = (), formulations: Sequence[str] = (), families: Sequence[str] = (),
-              modes: Sequence[int] = (), integrators: Sequence[str] = (), tolerances: Sequence[float] = (),
-              jobs: int = 0, progress: Progress | None = None) -> dict[str, Any]:
-        """Error against cost over the product of the axes: what ``withy trade --json`` prints.
-
-        Args:
-            outputs: what errors are measured on, as in `advise`; the usual ones where left out.
-            jobs: threads; 0: all.
-
-        Raises:
-            SceneError: where the scene, or what is asked of it, cannot be.
-        """
-        return _read_json(self._made.trade(as_list(outputs), as_list(formulations), as_list(families), as_list(modes),
-                                           as_list(integrators), as_list(tolerances), jobs, progress))
-
-    def advise(self, accuracy: str | float, outputs: Sequence[str] = (), *, formulations: Sequence[str] = (),
-               families: Sequence[str] = (), modes: Sequence[int] = (), integrators: Sequence[str] = (),
-               tolerances: Sequence[float] = (), seconds: float | None = None,
-               progress: Progress | None = None) -> dict[str, Any]:
-        """The cheapest model that holds an accuracy: what ``withy advise --json`` prints; "advice" is None where none does.
-
-        Args:
-            accuracy: a share (0.01 or ``"1%"``), a length or an angle (``"1 mm, 0.1 deg"``).
-            outputs: what it is asked of: hinges, ``"link1.tip"``, ``"link1.tip.deflection"``; all where left out.
-            seconds: of CPU time that the search may take; where left out 20 times that of the scene's run in
-                ``quadratic``, or 10 s if that is more.
-
-        Raises:
-            SceneError: where the scene, or what is asked of it, cannot be.
-        """
-        return _read_json(self._made.advise(str(accuracy), as_list(outputs), as_list(formulations), as_list(families),
-                                            as_list(modes), as_list(integrators), as_list(tolerances), seconds, progress))
-
-    def modes(self, lock: Sequence[str] = (), *, progress: Progress | None = None) -> dict[str, Any]:
-        """Natural modes about the steady state, hinges in ``lock`` held: an element of "runs" of ``withy modes --json``.
-
-        Raises:
-            SceneError: where the scene, or what is asked of it, cannot be.
-        """
-        return _read_json(self._made.modes(as_list(lock), progress))
-
-    def linearize(self, inputs: Sequence[str] = (), outputs: Sequence[str] = (),
-                  lock: Sequence[str] = ()) -> dict[str, Any]:
-        """The linear model of small motions about the initial state: what ``withy linearize`` prints, A to D as arrays.
-
-        Args:
-            inputs: loads of type ``input``, hinges whose efforts are inputs, or ``"all"``; the scene's inputs or, where
-                it has none, every hinge where left out.
-            outputs: names or their beginnings; the scene's where left out, or all.
-            lock: hinges that are held.
-
-        Raises:
-            SimulationStopped: where the mass matrix of what is free is singular, or something is not finite; from what
-                a load in Python raised.
-            SceneError: where the scene, or what is asked of it, cannot be.
-        """
-        linear = _read_json(self._made.linearize(as_list(inputs), as_list(outputs), as_list(lock)))
-        for name, rows, columns in (("A", "states", "states"), ("B", "states", "inputs"), ("C", "outputs", "states"),
-                                    ("D", "outputs", "inputs")):
-            # Of a matrix without elements, as B where nothing drives the scene, text has no shape.
-            linear[name] = numpy.array(linear[name], float).reshape(len(linear[rows]), len(linear[columns]))
-        return linear
 
     def _with(self, options: Mapping[str, Any]) -> Scene:
         if not options:
