@@ -290,6 +290,7 @@ class Collector {
     }
     for (std::size_t c = 0; c < effects.size(); ++c)
       for (std::size_t a = 0; a < n; ++a) {
+        if (effects[c][a].empty()) continue;  // nothing is known, which is not that it depends on nothing
         const MorrisMeasure m = morris_measure(effects[c][a]);
         table.line(fmt::format("{},{},{},{},{},{}", csv_text(about_.columns[c]), csv_text(about_.paths[a]), m.mean,
                                cells_of(m.mean_size), m.deviation, m.count));

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double tail = 0.025;
 constexpr double normal_half_width = 1.959963984540054;
+constexpr double unknown = std::numeric_limits<double>::infinity();  ///< of an end of an interval
 
 struct Moments {
   double mean = 0, deviation = 0;
@@ -32,7 +33,7 @@ Moments moments(std::span<const double> sample) {
 
 Estimate mean_of(std::span<const double> sample) {
   const Moments m = moments(sample);
-  if (sample.size() < 2) return {m.mean, m.mean, m.mean};
+  if (sample.size() < 2) return {m.mean, -unknown, unknown};
   const double n = static_cast<double>(sample.size());
   const double half =
       boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1), tail)) * m.deviation / std::sqrt(n);
@@ -77,7 +78,6 @@ Estimate quantile_estimate(Sorted& sorted, double p) {
   const boost::math::binomial_distribution<double, Up> below(n, p);
   const double low = boost::math::quantile(below, tail);
   const double high = boost::math::quantile(boost::math::complement(below, tail));
-  constexpr double unknown = std::numeric_limits<double>::infinity();
   return {quantile_of(sorted, p), low >= 1 ? sorted[static_cast<std::size_t>(low - 1)] : -unknown,
           high < n ? sorted[static_cast<std::size_t>(high)] : unknown};
 }
@@ -87,6 +87,7 @@ Estimate ratio(const std::vector<double>& a, const std::vector<double>& b) {
   const double denominator = moments(b).mean;
   if (!(denominator > 0)) return {};
   const double r = moments(a).mean / denominator;
+  if (a.size() < 2) return {r, -unknown, unknown};
   std::vector<double> influence;
   for (std::size_t j = 0; j < a.size(); ++j) influence.push_back((a[j] - r * b[j]) / denominator);
   const double half = normal_half_width * moments(influence).deviation / std::sqrt(static_cast<double>(a.size()));

@@ -8,6 +8,7 @@
 
 namespace withy::campaign {
 
+/// Ends that a sample tells nothing of are infinite: one number alone has no interval.
 struct Estimate {
   double value = 0, low = 0, high = 0;
 };

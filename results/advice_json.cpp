@@ -74,6 +74,7 @@ Json search_json(const AdviceQuestion& question, const study::Advice& advice, co
   j["outputs"] = question.outputs.names();
   j["measures"] = measure_json(question.outputs);
   j["floors"] = study::floors_text();
+  if (!advice.until.empty()) j["until"] = advice.until;
   if (advice.yardstick) j["reference"] = reference_json(question.outputs, *advice.yardstick);
   j["advice"] = nullptr;
   if (!reason.empty()) j["reason"] = reason;

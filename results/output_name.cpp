@@ -32,10 +32,10 @@ std::string output_name(const std::string& given, const fs::path& otherwise, boo
 fs::path renamed(const fs::path& file, const char* ending) { return file.filename().replace_extension(ending); }
 
 std::vector<fs::path> files_of(const Scene& scene, const std::string& also) {
-  std::vector<fs::path> all{scene.file, also};
-  for (const FileUsed& used : scene.sources.files) all.push_back(fs::path(scene.file).parent_path() / used.path);
-  for (const std::string& mesh : meshes_of(scene.source.at("bodies")))
-    all.push_back(fs::path(scene.file).parent_path() / mesh);
+  const fs::path folder = scene.folder_now();
+  std::vector<fs::path> all{folder / fs::path(scene.file).filename(), also};
+  for (const FileUsed& used : scene.sources.files) all.push_back(folder / used.path);
+  for (const std::string& mesh : meshes_of(scene.source.at("bodies"))) all.push_back(folder / mesh);
   return all;
 }
 

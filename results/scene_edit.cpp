@@ -176,7 +176,9 @@ void add_lines(std::string& out, const Json& map, int depth) {
 }
 
 /// Without what a command line changes.
-SceneValues as_in_file(const SceneValues& scene) { return SceneValues::parse(scene.text(), scene.file()); }
+SceneValues as_in_file(const SceneValues& scene) {
+  return SceneValues::parse(scene.text(), scene.file(), scene.document().whole_directory);
+}
 
 /// Outputs that a command line asks for beside the file's make no other scene.
 Value without_outputs(const SceneValues& scene) {
@@ -217,7 +219,8 @@ void write_changed(const SceneValues& scene, const std::vector<study::Change>& c
                             " cannot be edited into this; nothing is written. Change it by hand as the lines say");
   // An older file of this name is replaced; what the new scene reads, and the file it comes from, are not.
   std::vector<std::filesystem::path> read = files_of(make_scene(written, registry));
-  read.front() = scene.file();
+  read.front() =
+      std::filesystem::path(scene.document().directory_now()) / std::filesystem::path(scene.file()).filename();
   keep_inputs(file, read);
   write_file(file, text);
 }

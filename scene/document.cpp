@@ -293,9 +293,11 @@ std::string whole(const std::string& directory) {
   return (std::filesystem::current_path(none) / directory).string();
 }
 
-std::string Document::directory_now() const {
+std::string directory_now(const std::string& directory, const std::string& whole_directory) {
   return whole_directory.empty() || whole(directory) == whole_directory ? directory : whole_directory;
 }
+
+std::string Document::directory_now() const { return withy::directory_now(directory, whole_directory); }
 
 Place Document::key_place(const std::string& path) const {
   for (std::string p = path; !p.empty(); p.erase(p.find_last_of('/'))) {

@@ -50,6 +50,8 @@ bool read_document(std::string_view text, const Origin& origin, Document& docume
 
 /// A folder from the root on, by the working directory as it is; as it is given where there is none.
 std::string whole(const std::string& directory);
+/// A folder that was `whole_directory` from the root on: as messages name it, where that still leads there; else whole.
+std::string directory_now(const std::string& directory, const std::string& whole_directory);
 
 /// The bytes of a file. \throws std::system_error where it cannot be read, is larger than DocumentLimits::bytes
 /// (EFBIG), or is a pipe into which nobody writes (ETIMEDOUT).

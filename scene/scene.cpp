@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <list>
 #include <optional>
 #include <set>
@@ -315,6 +316,7 @@ Scene make(const SceneValues& values, Registry& registry, SceneParts* parts) {
   arithmetic.check("a plugin of this scene");
   if (!diagnostics.ok()) throw SceneError(values.file(), diagnostics.errors(), values.origins());
   scene.file = values.file();
+  scene.folder = values.document().whole_directory;
   scene.sha256 = values.sha256();
   scene.sources = std::move(sources);
   scene.settings = values.settings();
@@ -322,6 +324,10 @@ Scene make(const SceneValues& values, Registry& registry, SceneParts* parts) {
 }
 
 }  // namespace
+
+std::string Scene::folder_now() const {
+  return withy::directory_now(std::filesystem::path(file).parent_path().string(), folder);
+}
 
 Scene make_scene(const SceneValues& values, Registry& registry) { return make(values, registry, nullptr); }
 

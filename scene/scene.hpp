@@ -36,7 +36,8 @@ struct BodyModes {
 /// A scene ready to run. Immutable but for what the caller does with its copies.
 struct Scene {
   std::string name;
-  std::string file;
+  std::string file;                   ///< as it was named when it was read: for messages
+  std::string folder;                 ///< its own, from the root on; empty: not known
   Value source;                       ///< checked values, SI units, defaults filled in
   std::string sha256;                 ///< of the text as it was read
   std::vector<std::string> settings;  ///< `path=value` of the command line, in their order
@@ -53,6 +54,9 @@ struct Scene {
   std::vector<RunEvent> events;     ///< for RunOptions
   std::vector<SensorNode> outputs;  ///< in the order of the file
   State initial;
+
+  /// Where relative names of files begin, whatever the working directory is by now: `Document::directory_now`.
+  [[nodiscard]] std::string folder_now() const;
 };
 
 /// Checks the values of a scene and makes it. Loads only the plugins it names.

@@ -221,6 +221,15 @@ std::vector<std::string> at_limits(const Configuration& c, const State& state) {
   return names;
 }
 
+/// The first coordinate by which what acts has no finite derivative at a state; empty where there are all.
+std::string without_derivative(const Configuration& c, const State& state) {
+  const Eigen::MatrixXd by_position =
+      c.dynamics().stiffness(state.time, state.y, c.dynamics().steady_accelerations(state.time)).by_position;
+  for (const Eigen::Index s : free_speeds(c.held()))
+    if (!by_position.col(s).allFinite()) return c.layout().speed_names[static_cast<std::size_t>(s)];
+  return {};
+}
+
 }  // namespace
 
 NotFinite not_finite(const Configuration& c, const State& state) {
@@ -248,6 +257,11 @@ std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
   // What is left over is no number where a load gives none.
   if (const NotFinite found = not_finite(c, steady.state); !found.text.empty())
     return "no steady state was found: " + found.text;
+  if (const std::string name = without_derivative(c, steady.state); !name.empty())
+    return fmt::format(
+        "no steady state was found: the derivative of what acts by {} is not finite there, as that of a root at zero; "
+        "start from another state (--at)",
+        name);
   std::string text = fmt::format("no steady state was found: after {} steps of Newton's method ", steady.iterations);
   std::size_t worst = 0;
   double left = 0;

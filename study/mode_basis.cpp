@@ -3,7 +3,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "withy/core/plugin/mode_family.hpp"
 
@@ -107,7 +106,7 @@ std::shared_ptr<const Body> body_with(const Scene& scene, const std::string& bod
   Value changed = *given;
   for (const auto& [path, value] : values) set_below(changed, path, value);
   Diagnostics diagnostics;
-  return plugin->make(changed, {registry, diagnostics, std::filesystem::path(scene.file).parent_path().string()});
+  return plugin->make(changed, {registry, diagnostics, scene.folder_now()});
 }
 
 std::optional<std::vector<double>> same_shape(const Body& from, std::span<const double> q, const Body& to) {

@@ -13,7 +13,6 @@
 #include "withy/study/input_error.hpp"
 #include "withy/study/sampled_loads.hpp"
 #include "withy/study/sampled_steady.hpp"
-#include "withy/study/timed_loads.hpp"
 
 namespace withy::study {
 namespace {
@@ -93,8 +92,8 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
     at.turn = turning_modes(c, state, wish);
     if (!as_is && (!at.turn->check.steady || !at.turn->uneven.empty() || !at.turn->timed.empty()))
       at.steady->stays = false;
-    // Of a state as it is nobody has said that it stays.
-    if (as_is || (!at.turn->timed.empty() && !small_motions_change(c, state, tangents))) at.turn->timed.clear();
+    // Of a state as it is nobody has said that it stays; and small motions may be the same about one that does not.
+    if (as_is || (at.turn->shaking.empty() && at.turn->check.steady)) at.turn->timed.clear();
   } catch (const std::domain_error& e) {
     const NotFinite found = not_finite(c, state);
     at.problem = found.text.empty() ? e.what() : found.text;

@@ -58,9 +58,11 @@ struct ModesAt {
 
   /// The mode on a branch; null where there is none.
   [[nodiscard]] const Mode* on(std::size_t branch) const;
-  /// Whether these are modes of equations that change as the hinges turn, frozen at one angle, or about a balance of
-  /// loads that change with time: they tell no stability.
-  [[nodiscard]] bool frozen() const { return turn && (turn->check.periodic() || !turn->timed.empty()); }
+  /// Whether these are modes of equations that change as the hinges turn, frozen at one angle, or as loads change
+  /// them with time, or about a balance of such loads: they tell no stability.
+  [[nodiscard]] bool frozen() const {
+    return turn && (turn->check.periodic() || !turn->timed.empty() || !turn->shaking.empty());
+  }
 };
 
 /// One formulation, all values.

@@ -23,6 +23,10 @@ std::optional<Stability> stability_of(const Configuration& steady) {
     const ModesAt at = modes_at(steady, true);
     if (!at.problem.empty()) {
       found.unknown = at.problem;
+    } else if (at.turn && !at.turn->shaking.empty()) {
+      found.unknown = shaking_text(at.turn->shaking) +
+                      ", and modes of one instant tell nothing; --floquet with --period looks at a period after which "
+                      "everything repeats";
     } else if (at.frozen()) {
       found.unknown = "the equations of small motions change as the hinges turn, and modes at one angle tell nothing";
     }

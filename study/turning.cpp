@@ -79,20 +79,6 @@ std::string greatest_displacement(const Turn& turn, const Configuration& c) {
   return text;
 }
 
-/// The state with everything that is free displaced and moving, no two alike: what a load makes of it shows in its
-/// effort, also where it makes nothing of the state itself.
-State displaced_anyhow(const Configuration& c, State state) {
-  constexpr double far = 1e-2;  // rad, m, and a second of it
-  const Layout& layout = c.layout();
-  Eigen::VectorXd by(static_cast<Eigen::Index>(layout.speeds));
-  for (Eigen::Index s = 0; s < by.size(); ++s) {
-    by[s] = c.held()[static_cast<std::size_t>(s)] ? 0.0 : far * (1 + std::cos(static_cast<double>(s)) / 2);
-    state.y[layout.positions + static_cast<std::size_t>(s)] += by[s];
-  }
-  c.dynamics().displace(state.y, by);
-  return state;
-}
-
 /// The first motion that is another a period later; empty where all repeat.
 std::string motion_not_repeating(const Configuration& c, const State& steady, double period) {
   constexpr double rounding = 1e-9;
@@ -141,6 +127,13 @@ std::string not_repeating(const Configuration& c, const State& steady, const Tur
   return {};
 }
 
+/// Whether hinges move at rates or as motions drive them.
+bool turns(const Model& model, const Turning& turning) {
+  const std::vector<MotionNode>& motions = model.motions();
+  return !turning.speeds.empty() ||
+         std::any_of(motions.begin(), motions.end(), [](const MotionNode& node) { return !node.motion->locks(); });
+}
+
 }  // namespace
 
 TurningWish turning_wish(bool floquet, const std::optional<std::vector<std::string>>& blades, double period) {
@@ -161,9 +154,11 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
       for (const std::size_t m : uneven_motions(c.dynamics(), steady, c.held()))
         result.uneven.push_back(c.prepared().model().motions()[m].name);
     if (!result.check.steady) result.passing = moving_freely(c, steady);
-    // Where hinges turn, a turn has told: a craft may turn with the axes of its orbit, and nothing changes.
-    const bool still = result.check.turning.period == 0 && result.check.turning.problem.empty();
-    if (wish.period == 0 && still) result.timed = timed_loads(c, steady);
+    if (wish.period == 0) {
+      TimedLoads timed = timed_loads(c, steady, result.check.turning);
+      result.timed = std::move(timed.pushing), result.shaking = std::move(timed.shaking);
+    }
+    result.turns = turns(c.prepared().model(), result.check.turning);
     if (!wish.floquet && !wish.blades) return result;
     const Turning& turning = result.check.turning;
     if (turning.period == 0) {
@@ -240,6 +235,25 @@ std::string timed_text(const std::vector<std::string>& loads) {
       many ? "s" : "", fmt::join(loads, "', '"), many ? "" : "s", many ? "them" : "it", loads.front());
 }
 
+std::string shaking_text(const std::vector<std::string>& loads) {
+  const bool many = loads.size() > 1;
+  return fmt::format("the load{} '{}' change{} the equations of small motions with time", many ? "s" : "",
+                     fmt::join(loads, "', '"), many ? "" : "s");
+}
+
+namespace {
+
+/// Of a state where loads or motions repeat and no hinge moves by its rate.
+std::string shaken_text(const TurnCheck& check) {
+  return fmt::format(
+      "The equations of small motions change with time, over the period of {:.6g} s by {:.2g} % of their greatest "
+      "element{}: these are those of one instant and tell no stability. --floquet looks at the whole period.",
+      check.turning.period, 100 * check.change,
+      check.steady ? "" : ", and this state is balanced at this instant alone");
+}
+
+}  // namespace
+
 std::string turn_text(const TurningModes& turn) {
   constexpr const char* no_stability = " Growth and decay are those of this instant and tell no stability.";
   const TurnCheck& check = turn.check;
@@ -247,6 +261,10 @@ std::string turn_text(const TurningModes& turn) {
   if (!turn.passing.empty()) return passing_text(turn.passing) + no_stability;
   if (!turn.uneven.empty()) return uneven_text(turn.uneven) + no_stability;
   if (!turn.timed.empty()) return timed_text(turn.timed) + no_stability;
+  if (!turn.shaking.empty())
+    return fmt::format(
+        "At this state {}.{}{}", shaking_text(turn.shaking), no_stability,
+        turn.floquet ? "" : " --floquet with --period looks at a period after which everything repeats.");
   if (!turning.problem.empty())
     return check.periodic()
                ? fmt::format(
@@ -260,6 +278,7 @@ std::string turn_text(const TurningModes& turn) {
                      "turn is not looked at: {}.",
                      turning.problem);
   if (turning.period == 0) return {};
+  if (!turn.turns) return check.periodic() ? shaken_text(check) : std::string();
   if (!check.periodic())
     return fmt::format("The hinges turn once in {:.6g} s, and the equations of small motions stay the same.",
                        turning.period);

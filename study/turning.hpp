@@ -50,9 +50,12 @@ struct TurningModes {
   /// Motions that do not go on at the rate they have, of hinges that what is free feels, where no period is given: an
   /// instant likewise.
   std::vector<std::string> uneven;
-  /// Loads that are functions of time themselves and act on what is free, where nothing turns and no period is given:
-  /// an instant likewise.
+  /// Loads that are functions of time themselves and act on what is free, where no period is given: an instant
+  /// likewise.
   std::vector<std::string> timed;
+  /// Those that change the equations of small motions, where no period is given: growth and decay are of one instant.
+  std::vector<std::string> shaking;
+  bool turns = false;         ///< hinges move at rates or as motions drive them
   std::string problem;        ///< why there are no exponents; empty where there are
   std::string blade_problem;  ///< why no blades are seen; empty where they are, or nobody asked
 };
@@ -72,7 +75,7 @@ TurningWish turning_wish(bool floquet, const std::optional<std::vector<std::stri
 TurningModes turning_modes(const Configuration& configuration, const State& steady, const TurningWish& wish);
 
 /// One sentence: that the equations of small motions are constant over a turn, or how they change, or why that is not
-/// known; empty where nothing turns.
+/// known; empty where nothing turns and no load changes them.
 std::string turn_text(const TurningModes& turn);
 
 /// Hinges that are not held and whose rates do not vanish.
@@ -81,6 +84,8 @@ std::vector<std::string> moving_freely(const Configuration& configuration, const
 std::string uneven_text(const std::vector<std::string>& motions);
 /// That a state does not stay with loads that change with time themselves, and what to do.
 std::string timed_text(const std::vector<std::string>& loads);
+/// "the load 'base' changes the equations of small motions with time".
+std::string shaking_text(const std::vector<std::string>& loads);
 /// That a state with such hinges does not stay, and what to do.
 std::string passing_text(const std::vector<std::string>& hinges);
 

@@ -23,16 +23,22 @@ constexpr double most_radians_a_step = 1;
 constexpr double share_that_counts = 0.1;
 /// Of the energy that moves in the run: with less of it, speeds of vibration are below a thousandth of the others.
 constexpr double energy_that_counts = 1e-6;
+/// Of the kinetic energy: what rings by itself has as much in `by_acceleration` over its phases, and what follows a
+/// load with a tenth of its frequency a hundredth.
+constexpr double share_that_rings = 0.25;
 
 /// What vibrates at a state.
 struct Vibrating {
   double frequency = 0;    ///< [rad/s]
-  double energy = 0;       ///< kinetic [J]
+  double energy = 0;       ///< kinetic, η̇²/2 [J]
   Eigen::Index speed = 0;  ///< that has most of it
+  Eigen::Index rank = 0;   ///< among the vibrations of its state
+  /// (η̈/ω)²/2 [J]: the energy of ω² times how far it is from where the forces would hold it.
+  double by_acceleration = 0;
 };
 
-/// At a state: η̇ = vᵀ M u of each vibration v with vᵀ M v = 1. What hinges do that nothing bends is orthogonal to all
-/// of them, and speeds that motions prescribe take no part.
+/// At a state: η̇ = vᵀ M u and η̈ = vᵀ M u̇ of each vibration v with vᵀ M v = 1. What hinges do that nothing bends is
+/// orthogonal to all of them, and speeds that motions prescribe take no part.
 void add_vibrating(const EquationsOfMotion& equations, const Eigen::MatrixXd& stiffness, const State& state,
                    std::vector<Vibrating>& all) {
   const DenseSystem system = equations.system(state.time, state.y);
@@ -48,9 +54,14 @@ void add_vibrating(const EquationsOfMotion& equations, const Eigen::MatrixXd& st
                         mass = 0.5 * (whole + whole.transpose());
   const Vibrations found = vibrations(stiffness(free, free), mass);
   const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(state.y.data() + equations.layout().positions, n)(free);
+  const std::vector<double> u_dot = solve(system);
+  const Eigen::VectorXd a = Eigen::Map<const Eigen::VectorXd>(u_dot.data(), n)(free);
   const Eigen::VectorXd rates = found.vectors.transpose() * (mass * u);
+  const Eigen::VectorXd accelerations = found.vectors.transpose() * (mass * a);
   for (Eigen::Index k = found.rigid(); k < found.squares.size(); ++k) {
-    Vibrating v{std::sqrt(found.squares[k]), 0.5 * rates[k] * rates[k], 0};
+    const double square = found.squares[k];
+    Vibrating v{std::sqrt(square), 0.5 * rates[k] * rates[k], 0, k - found.rigid(),
+                0.5 * accelerations[k] * accelerations[k] / square};
     const Eigen::VectorXd shares = found.vectors.col(k).cwiseAbs2().cwiseProduct(mass.diagonal());
     shares.maxCoeff(&v.speed);
     v.speed = free[static_cast<std::size_t>(v.speed)];
@@ -79,6 +90,22 @@ std::vector<Vibrating> vibrating_along(const Model& model, const EquationsOfMoti
   return all;
 }
 
+/// Gives what is carried along by a slower force, and does not ring, the frequency of its motion: ω² is then to the
+/// square of that frequency as the kinetic energy of the vibration to its other one, over the states.
+void take_frequencies_of_motion(std::vector<Vibrating>& all) {
+  std::vector<double> energy, by_acceleration;
+  for (const Vibrating& v : all) {
+    const auto rank = static_cast<std::size_t>(v.rank);
+    if (rank >= energy.size()) energy.resize(rank + 1), by_acceleration.resize(rank + 1);
+    energy[rank] += v.energy, by_acceleration[rank] += v.by_acceleration;
+  }
+  for (Vibrating& v : all) {
+    const auto rank = static_cast<std::size_t>(v.rank);
+    if (by_acceleration[rank] < share_that_rings * energy[rank])
+      v.frequency *= std::sqrt(by_acceleration[rank] / energy[rank]);
+  }
+}
+
 }  // namespace
 
 std::optional<Indicator> vibrations_followed(const Scene& scene, const EquationsOfMotion& equations,
@@ -91,6 +118,7 @@ std::optional<Indicator> vibrations_followed(const Scene& scene, const Equations
   std::vector<Vibrating> all = vibrating_along(model, equations, summary.validity.along, states);
   for (const Vibrating& v : all) whole += v.energy;
   if (!(whole > energy_that_counts * summary.energy_scale * states)) return {};
+  take_frequencies_of_motion(all);
   std::sort(all.begin(), all.end(), [](const Vibrating& a, const Vibrating& b) { return a.frequency > b.frequency; });
   double above = 0;
   const auto counts = std::find_if(all.begin(), all.end(), [&](const Vibrating& v) {

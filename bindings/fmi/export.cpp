@@ -55,13 +55,13 @@ void check_plugins(const study::Prepared& prepared) {
 
 /// A file that the scene names by `path`, into a folder of the archive; \return its bytes
 /// \param carried names of those that are there, which the scene may name twice
-std::string add_named(ZipFile& zip, const std::string& folder, const std::string& scene, const std::string& path,
+std::string add_named(ZipFile& zip, const std::string& folder, const Scene& scene, const std::string& path,
                       std::set<std::string>& carried) {
   const fs::path name = fs::path(path).lexically_normal();
   if (name.is_absolute() || (name.begin() != name.end() && *name.begin() == ".."))
-    throw study::InputError(scene + ": file '" + path +
+    throw study::InputError(scene.file + ": file '" + path +
                             "' is not beside or below the scene; an FMU carries files by names relative to it");
-  std::string bytes = read_bytes((fs::path(scene).parent_path() / name).string());
+  std::string bytes = read_bytes((fs::path(scene.folder_now()) / name).string());
   if (carried.insert(name.generic_string()).second) zip.add(folder + name.generic_string(), bytes);
   return bytes;
 }
@@ -75,12 +75,12 @@ void add_scene(ZipFile& zip, const study::Prepared& prepared, const SceneOptions
   zip.add(folder + file.filename().string(), prepared.values.text());
   std::set<std::string> carried{file.filename().string()};
   for (const FileUsed& used : prepared.scene.sources.files) {
-    if (sha256(add_named(zip, folder, prepared.scene.file, used.path, carried)) != used.sha256)
+    if (sha256(add_named(zip, folder, prepared.scene, used.path, carried)) != used.sha256)
       throw study::InputError(used.path + ": has changed since the scene was read");
   }
   // Pictures have files too, which the scene is not read without.
   for (const std::string& mesh : meshes_of(prepared.scene.source.at("bodies")))
-    add_named(zip, folder, prepared.scene.file, mesh, carried);
+    add_named(zip, folder, prepared.scene, mesh, carried);
 }
 
 void add_library(ZipFile& zip, const Description& d) {

@@ -112,7 +112,7 @@ double equivalent_thickness(const Value& plate) {
 }
 
 Looks::Looks(const Scene& scene) {
-  const std::filesystem::path folder = std::filesystem::path(scene.file).parent_path();
+  const std::filesystem::path folder = scene.folder_now();
   auto known = std::make_shared<Known>();
   for (const auto& [name, value] : scene.source.at("bodies").members()) {
     known->bodies.emplace(name, &value);

@@ -72,6 +72,12 @@ TEST(Morris, MeasuresOfEffects) {
   EXPECT_NEAR(m.deviation, std::sqrt(26.0 / 3), 1e-14);
 }
 
+TEST(Morris, OfOneEffectThereIsNoInterval) {
+  const Estimate one = morris_measure({-3}).mean_size;
+  EXPECT_DOUBLE_EQ(one.value, 3);
+  EXPECT_TRUE(std::isinf(one.low) && std::isinf(one.high));
+}
+
 TEST(Statistics, QuantilesAreThoseOfTheSortedSample) {
   constexpr std::array<double, 7> shares = {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
   for (const std::size_t size : {1u, 2u, 3u, 10u, 97u, 1000u}) {

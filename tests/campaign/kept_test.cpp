@@ -133,6 +133,30 @@ loads: {push: {type: hinge-effort, hinge: slide, law: constant, value: 1}}
   EXPECT_THAT(indices, HasSubstr("final.slide[m],bodies.block.mass,20,"));
 }
 
+/// A result that no case has a number of has no effect of anything, which is not one of zero.
+TEST(Sweeps, HaveNoRowOfAMorrisMeasureThatNothingIsKnownOf) {
+  const PlanFolder folder;
+  folder.write("block.yaml", R"(format: withy/1
+time: {end: 2, output: 1}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs: {none: {type: expression, value: sqrt(-1 - t)}}
+loads: {push: {type: hinge-effort, hinge: slide, law: constant, value: 1}}
+)");
+  folder.write("none.yaml", R"(format: withy-sweep/1
+scene: block.yaml
+vary: {bodies.block.mass: {uniform: {from: 2, to: 20}}}
+cases: 4
+design: morris
+keep: {final: [none, slide]}
+)");
+  run(folder, read_plan((folder / "none.yaml").string(), plugins()), "morris", {1, 1, 1, {}});
+  EXPECT_TRUE(collect(folder / "morris").indices);
+  const std::string indices = folder.read("morris/indices.csv");
+  EXPECT_THAT(indices, HasSubstr("final.slide[m],bodies.block.mass,"));
+  EXPECT_THAT(indices, testing::Not(HasSubstr("final.none")));
+}
+
 /// 31 points of the grid and two results: 62 histories.
 TEST(Sweeps, SayHowManyOfTheirHistoriesThePictureAndThePageHave) {
   const PlanFolder folder;

@@ -226,4 +226,22 @@ TEST(Description, WhatCannotBeAnFmuIsRefusedWithItsReason) {
   EXPECT_FALSE(std::filesystem::exists(scratch() / "refused.fmu"));
 }
 
+/// What a scene names is found where it was, also by a host that has gone elsewhere since.
+TEST(Description, AnFmuCarriesTheFilesOfTheFolderThatTheSceneWasReadIn) {
+  const std::filesystem::path began = std::filesystem::current_path();
+  for (const char* name : {"own", "other"}) std::filesystem::create_directories(scratch() / name);
+  std::ofstream(scratch() / "own" / "shape.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(scratch() / "own" / "scene.yaml")
+      << "format: withy/1\ntime: {end: 0.1}\n"
+         "bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], visual: {mesh: shape.obj}}}\n"
+         "hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}\n";
+  std::filesystem::current_path(scratch() / "own");
+  const auto prepared = host::Scene::read(library(), "scene.yaml").prepare();
+  std::filesystem::current_path(scratch() / "other");
+  const std::filesystem::path out = scratch() / "elsewhere.fmu";
+  EXPECT_NO_THROW(static_cast<void>(fmi::export_fmu(*prepared, {}, library().registry(), {3, false, true, out})));
+  EXPECT_TRUE(std::filesystem::exists(out));
+  std::filesystem::current_path(began);
+}
+
 }  // namespace withy::test

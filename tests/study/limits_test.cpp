@@ -177,6 +177,32 @@ initial: {bodies: {b: {modes: [0, 0, 0.01, 0, 0]}}}
   EXPECT_TRUE(std::isnan(of("{name: dopri5, rtol: 1e-6, atol: 1e-9}").value)) << "its steps are of its own choice";
 }
 
+// A clamped beam of 157 rad/s that bends with a force of 1.57 rad/s, from where it is held at the start, in steps that
+// are long beside its vibration and short beside the force: what an implicit integrator is for. Let go, it rings.
+TEST(Limits, OfFixedStepsAreOfTheFrequencyOfTheMotionThatThereIs) {
+  const std::string beam = R"(time: {end: 8, output: 0.1}
+integrator: {name: gauss, step: 0.02}
+bodies: {b: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 2000, modes: 1, family: clamped-free}}}
+hinges: {r: {type: weld, parent: world, child: b}}
+)";
+  const auto of = [&](const std::string& rest) {
+    const Limited run(beam + rest, true);
+    EXPECT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
+    for (const Indicator& i : run.certified)
+      if (i.text.find("step times the frequency of what vibrates") == 0) return i;
+    return Indicator{"", NAN, NAN, ""};
+  };
+  const double own = std::pow(1.8751041, 2) * std::sqrt(2000);
+  EXPECT_NEAR(of("initial: {bodies: {b: {modes: [0.01]}}}").value, 0.02 * own, 1e-3 * own * 0.02);
+  // 50 N (1 − cos ωt)
+  const double followed = of(R"(loads:
+  still: {type: force, frame: b.tip, value: [0, 50, 0]}
+  sways: {type: force, frame: b.tip, law: sine, amplitude: [0, 50, 0], period: 4, phase: -1.5707963267948966}
+)")
+                              .value;
+  EXPECT_LT(followed, 0.1) << "at 1.57 rad/s a step is 0.031";
+}
+
 // What a plate bends like is not said: the stricter of both limits holds, that of bending across the plane of rotation.
 TEST(Limits, OfRatesAreThoseAcrossThePlaneUnlessABeamBendsInIt) {
   const std::string rest = R"(

@@ -271,5 +271,100 @@ TEST(Stability, OfABalanceOfALoadThatChangesWithTimeIsNotTold) {
       balance_of(pushed("{type: force, frame: b.e, law: sine, amplitude: [0, 1, 0], period: 7}"), {{"h"}, {}}).stays);
 }
 
+/// A flap on a hub that turns once in 1.05 s, pushed by a sine whose axes turn with it: the push is no angle's.
+TEST(Stability, OfALoadThatChangesWithTimeIsNotToldWhereHingesTurnEither) {
+  const std::string rotor = R"(
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  b: {type: rigid, mass: 2, inertia: [1, 4, 4.5, 0, 0, 0], frames: {e: {position: [1, 0, 0]}}}
+hinges:
+  a: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  f: {type: revolute, axis: [0, 1, 0], parent: hub, child: b}
+loads:
+  s: {type: hinge-spring, hinge: f, stiffness: 3, damping: 0.5}
+)";
+  const Holding spun{{}, {{"a", 6}}};
+  EXPECT_TRUE(balance_of(rotor, spun).stays);
+  for (const char* start : {"0", "2"}) {
+    const Equilibrium found = balance_of(
+        rotor +
+            "  g: {type: force, frame: b.e, following: true, law: sine, amplitude: [0, 0, 1], period: 100, start: " +
+            start + "}\n",
+        spun, {"time.end=10"});
+    ASSERT_TRUE(found.steady.converged) << start;
+    EXPECT_FALSE(found.stays) << start;
+    EXPECT_TRUE(found.instant) << start;
+    EXPECT_THAT(found.changing, HasSubstr("The load 'g' changes with time")) << start;
+  }
+  // Axes that turn with what they act on change nothing, nor does a turn of weight become a matter of time.
+  const std::string tide = "  g: {type: gravity-gradient, rate: 0.8, vertical: [1, 0, 0], normal: [0, 0, 1]}\n";
+  const std::vector<std::string> leaning = {"time.end=10", "bodies.b.inertia=[1, 4, 4.5, 0, 0.2, 0]"};
+  const Equilibrium with_its_axes = balance_of(rotor + tide, {{}, {{"a", 0.8}}}, leaning);
+  EXPECT_TRUE(with_its_axes.stays) << with_its_axes.changing;
+  EXPECT_THAT(balance_of(rotor + tide, {{}, {{"a", 0.9}}}, leaning).changing,
+              HasSubstr("The load 'g' changes with time"));
+  EXPECT_THAT(
+      balance_of(rotor, spun, {"gravity=[1, 0, 0]", "bodies.b.center_of_mass=[0.1, 0, 0.1]", "time.end=10"}).changing,
+      HasSubstr("The hinges turn"));
+}
+
+/// A pendulum on a base that shakes along its rod is balanced and driven up by parametric resonance: nothing pushes at
+/// the state, and modes of one instant tell nothing. A whole period does.
+TEST(Stability, OfSmallMotionsThatALoadChangesWithTimeIsNotTold) {
+  const std::string pendulum = R"(
+gravity: [0, -9.81, 0]
+bodies: {b: {type: rigid, mass: 1, center_of_mass: [0, -1, 0], inertia: [0.01, 0.01, 0.01, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+loads:
+  f: )";
+  for (const std::string load : {"{type: base-excitation, law: sine, amplitude: [0, 3, 0], period: 1}",
+                                 "{type: base-excitation, law: sine, amplitude: [0, 3, 0], period: 1, start: 5}",
+                                 "{type: expression, hinge: h, value: 4*sin(4.5*t)*h}"}) {
+    const Equilibrium found = balance_of(pendulum + load + "\n", {}, {"time.end=20"});
+    EXPECT_TRUE(found.stays) << load << found.changing;
+    ASSERT_TRUE(found.stability.has_value()) << load;
+    EXPECT_FALSE(found.stability->stable()) << load;
+    EXPECT_THAT(stability_text(found.stability), HasSubstr("the load 'f' changes the equations of small motions"));
+    const Prepared prepared = scene_of(pendulum + load + "\n", {"time.end=20"});
+    const ModesAt at = modes_at({prepared, prepared.scene.initial, {}}, false);
+    EXPECT_TRUE(at.frozen()) << load;
+    EXPECT_THAT(turn_text(*at.turn), HasSubstr("tell no stability")) << load;
+  }
+  // Of what is of second order small motions know nothing, and a push that only time changes leaves them as they are.
+  EXPECT_TRUE(balance_of(pendulum + "{type: expression, hinge: h, value: sin(t)*h*h}\n").stability->stable());
+  const Prepared pushed = scene_of(pendulum + "{type: hinge-effort, hinge: h, law: sine, amplitude: 1, period: 7}\n");
+  const ModesAt at = modes_at({pushed, pushed.scene.initial, {}}, false);
+  EXPECT_FALSE(at.frozen());
+  EXPECT_FALSE(at.steady->stays.value());
+}
+
+/// The exponent of ẍ + (9.81 + 3 sin 2πt)/1.01 x = 0 is that of its monodromy matrix over the second: 0.2358/s.
+TEST(Stability, OfAShakenPendulumIsToldByAWholePeriodOfWhichNoAngleIsNamed) {
+  const Prepared prepared = scene_of(R"(
+gravity: [0, -9.81, 0]
+bodies: {b: {type: rigid, mass: 1, center_of_mass: [0, -1, 0], inertia: [0.01, 0.01, 0.01, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+loads: {f: {type: base-excitation, law: sine, amplitude: [0, 3, 0], period: 1}}
+)");
+  TurningWish wish;
+  wish.floquet = true, wish.period = 1;
+  const ModesAt at = modes_at({prepared, prepared.scene.initial, {}}, false, wish);
+  ASSERT_TRUE(at.turn && at.turn->floquet);
+  EXPECT_NEAR(at.turn->floquet->modes.front().exponent.real(), 0.2358, 1e-4);
+  EXPECT_THAT(turn_text(*at.turn), HasSubstr("change with time, over the period of 1 s"));
+  EXPECT_THAT(turn_text(*at.turn), Not(HasSubstr("angle")));
+}
+
+/// A root of the coordinate is balanced at zero and has no derivative there: no start nearer to it helps.
+TEST(Stability, WhereADerivativeIsNotFiniteItIsNamed) {
+  const Equilibrium found = balance_of(R"(
+bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+loads: {k: {type: expression, hinge: h, value: sqrt(h)}}
+)");
+  EXPECT_FALSE(found.steady.converged);
+  EXPECT_THAT(found.problem, HasSubstr("the derivative of what acts by h.0 is not finite there"));
+}
+
 }  // namespace
 }  // namespace withy::study

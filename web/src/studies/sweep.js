@@ -150,7 +150,8 @@ export class Sweep {
     if (!own.length) return [];
     const value = at('value') >= 0 ? told_values(own, at('parameter'), at('value')) : () => '';
     const bars = (title, of, color) => this.bars(title, own.map(r => ({ name: r[at('parameter')], value_told: value(r), ...of(r) })), color);
-    const estimate = name => r => ({ value: +r[at(name)], low: +r[at(`${name}.low`)], high: +r[at(`${name}.high`)] });
+    const end = cell => cell === '' || cell == null ? undefined : +cell; // of one number there is no interval
+    const estimate = name => r => ({ value: +r[at(name)], low: end(r[at(`${name}.low`)]), high: end(r[at(`${name}.high`)]) });
     if (at('total') >= 0) return [bars('Sobol index, alone: share of the variance', estimate('first'), colours[0]), bars('Sobol index, total: with all others', estimate('total'), colours[1])];
     if (at('mu_star') >= 0) return [bars('Morris: mean size of the elementary effects', estimate('mu_star'), colours[0]), bars('Morris: their deviation (interaction, curvature)', r => ({ value: +r[at('sigma')] }), colours[1])];
     return [bars(`Change of ${result.name}, one value at a time`, r => ({ value: +r[at('difference')] }), colours[0])];
