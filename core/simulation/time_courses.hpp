@@ -11,8 +11,8 @@ namespace withy {
 
 /// Looks at the formulas at 4096 intervals of a run. Where one of them, or its change from interval to interval, begins
 /// to change, or to change faster, steps are no longer than it takes to go through the range of that change, until they
-/// must have met it: an estimate of an error sees what its stages meet, and from then on it rules alone. What lasts less than an interval may still be passed
-/// over.
+/// must have met it: an estimate of an error sees what its stages meet, and from then on it rules alone. What lasts
+/// less than an interval may still be passed over.
 class TimeCourses {
  public:
   /// \param start, end of the run [s]; without an end nothing is known
