@@ -228,6 +228,16 @@ void add_unseen(const Prepared& prepared, RunSummary& summary) {
   summary.message += (summary.message.empty() ? "" : " ") + text + ".";
 }
 
+/// Of a run that was interrupted before it began.
+RunSummary not_begun(const Prepared& prepared) {
+  RunSummary summary;
+  summary.status = RunStatus::interrupted;
+  summary.final = begun(prepared.model(), *prepared.equations, prepared.scene.initial);
+  summary.reached = summary.final.time;
+  summary.message = "the run was interrupted before it began, while its formulations were chosen: run it again";
+  return summary;
+}
+
 bool wanted(Estimate estimate, const Beyond& beyond) {
   return estimate == Estimate::always || (estimate == Estimate::automatic && !beyond.highest);
 }
@@ -277,7 +287,8 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   CertifiedRun result;
   if (prepared.escalates()) {
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
-    result.summary = run_planned(prepared, settings, plan);
+    result.not_begun = settings.control.stop();
+    result.summary = result.not_begun ? not_begun(prepared) : run_planned(prepared, settings, plan);
     add_unseen(prepared, result.summary);
     // What is inaccurate here is the choice, and nothing grows.
     if (result.summary.status != RunStatus::inaccurate) result.summary.message += why_it_grew(prepared, result.summary);
@@ -300,6 +311,8 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
     estimate =
         estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
                        settings.estimate == Estimate::always ? Price::any : Price::tenth, settings.control.interrupted);
+  result.estimate_interrupted = result.summary.status != RunStatus::interrupted && settings.control.stop();
+  if (result.estimate_interrupted) estimate = {{}, "not estimated: the estimate was interrupted"};
   std::vector<DroppedForces> dropped;
   if (beyond) dropped = dropped_terms(prepared, *beyond, result.summary.validity.along, registry);
   std::string why_not;
@@ -335,7 +348,7 @@ RunSummary simulate(const Prepared& prepared, Registry& registry, const std::fun
   };
   if (prepared.escalates()) {
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
-    return run_planned(prepared, settings, plan);
+    return settings.control.stop() ? not_begun(prepared) : run_planned(prepared, settings, plan);
   }
   return run_plainly(prepared, settings, nullptr);
 }

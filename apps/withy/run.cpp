@@ -60,7 +60,12 @@ ExitStatus run(const RunArguments& given) {
                              (has_report_page() ? folder_text(arguments.out)
                                                 : "\nresults in " + arguments.out + ", drawn in its results.svg\n"));
   const ExitStatus status = ended(summary);
-  if (status == ExitStatus::interrupted) complain("the same command with --resume goes on from there");
+  if (result.run.estimate_interrupted) {
+    complain("interrupted after the run, while its error was estimated: its results are whole; run it again for that");
+    return ExitStatus::interrupted;
+  }
+  if (status == ExitStatus::interrupted && !result.run.not_begun)
+    complain("the same command with --resume goes on from there");
   return status;
 }
 

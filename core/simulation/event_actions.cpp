@@ -37,7 +37,10 @@ EventActions::EventActions(const Model& model, const EquationsOfMotion& equation
                                      ? 0.0
                                      : value(event, t, y) - event.value;
                         },
-                        event.direction, event.stops});
+                        event.direction, event.stops,
+                        [this, &event, i](std::span<const double> y) {
+                          return event.when == ActingEvent::When::passes && !over_at(i, y);
+                        }});
   }
 }
 

@@ -11,8 +11,9 @@
 namespace withy {
 namespace {
 
-/// Both equations as one system for a stepper, of one thread: y holds the positions of both, the
-/// speeds of both, the continuous and the discrete states of both, then the work of the first.
+/// Both equations as one system for a stepper, of one thread: y holds the positions of both, the speeds of both, the
+/// continuous and the discrete states of both, then the work of the second and that of the first. The work of the
+/// second has no part in errors of steps: it stands with the discrete states, which linearly implicit steps alone move.
 class PairedEquations final : public EquationsOfMotion, private LinearlyImplicit {
  public:
   PairedEquations(const EquationsOfMotion& first, const EquationsOfMotion& second)
@@ -24,7 +25,7 @@ class PairedEquations final : public EquationsOfMotion, private LinearlyImplicit
     layout_.positions = 2 * positions_;
     layout_.speeds = 2 * speeds_;
     layout_.continuous = 2 * continuous_;
-    layout_.discrete = 2 * discrete_;
+    layout_.discrete = 2 * discrete_ + 1;
   }
   const Layout& layout() const override { return layout_; }
   Work make_work() const override { return Work(0); }
@@ -36,6 +37,7 @@ class PairedEquations final : public EquationsOfMotion, private LinearlyImplicit
       if (!e.ok()) return e;
       put(half.y_dot, i, y_dot);
     }
+    y_dot[y_dot.size() - 2] = 0;
     y_dot.back() = halves_[0].y_dot.back();
     return {};
   }
@@ -52,6 +54,7 @@ class PairedEquations final : public EquationsOfMotion, private LinearlyImplicit
       if (!e.ok()) return e;
       put(half.y_dot, i, y_dot);
     }
+    y_dot[y_dot.size() - 2] = halves_[1].y_dot.back();
     y_dot.back() = halves_[0].y_dot.back();
     return {};
   }
@@ -62,11 +65,11 @@ class PairedEquations final : public EquationsOfMotion, private LinearlyImplicit
       put(halves_[i].y, i, y);
     }
   }
-  /// One of the two states; the work is known of the first alone.
+  /// One of the two states, with its work.
   void take(std::span<const double> y, std::size_t i, std::span<double> own) const noexcept {
     for (const Part& part : parts())
       std::copy_n(y.data() + 2 * part.first + i * part.count, part.count, own.data() + part.first);
-    own.back() = i == 0 ? y.back() : 0;
+    own.back() = i == 0 ? y.back() : y[y.size() - 2];
   }
   void put(std::span<const double> own, std::size_t i, std::span<double> y) const noexcept {
     for (const Part& part : parts())

@@ -36,8 +36,9 @@ PairedTolerances paired_tolerances(const RunSummary& summary);
 /// Integrates both from `initial` with common steps. Where the equations differ by little, so do their solutions, and
 /// the errors of a common step are nearly the same in both: the difference is right to a relative accuracy of about the
 /// integrator's, however small it is, and a coarse integrator serves. `output` receives both states at the start, at
-/// the multiples of the output interval and at the end; the work is that of the first, from zero on, and zero in the
-/// second. \throws std::invalid_argument where a load has switching functions: both would switch at times of their own.
+/// the multiples of the output interval and at the end, works from zero on; that of the second is known where steps are
+/// linearly implicit (CoarseSteps), else zero. \throws std::invalid_argument where a load has switching functions: both
+/// would switch at times of their own.
 PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const EquationsOfMotion& second,
                      const Integrator& integrator, const State& initial, const PairedRunOptions& options,
                      const std::function<void(const State& first, const State& second)>& output);

@@ -14,6 +14,8 @@ struct RunEvent {
   std::function<double(double t, std::span<const double> y)> function;  ///< continuous; y as in State
   int direction = 0;   ///< +1: from below alone, −1: from above alone
   bool stops = false;  ///< the run ends there, completed
+  /// Whether it looks at all in a state; empty: always. Where it does not, the function is zero.
+  std::function<bool(std::span<const double> y)> looks = {};
 };
 
 /// Where an event's function was zero.

@@ -25,7 +25,9 @@ Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::
     : stepper_(std::move(stepper)),
       clocks_(model, equations),
       jumps_(discontinuities(model)),
-      zeros_(model, options.events, stepper_->state(), options.end, !has_given_steps(*stepper_)),
+      zeros_(model, options.events, stepper_->state(),
+             options.looks_over > 0 ? stepper_->state().time + options.looks_over : options.end,
+             !has_given_steps(*stepper_)),
       actions_(options.actions),
       times_(stepper_->state().time, options.output, options.end),
       model_(model),
@@ -324,6 +326,10 @@ void Stepping::remember(Memory& memory) {
   memory(beyond_kink_);
   memory(zeros_at_once_);
   memory(step_evaluations_);
+  // Where an event has ended the run what the clocks have to do at that instant is still to come.
+  bool due = clocks_.due(state().time);
+  memory(due);
+  if (memory.reading() && due) clocks_.go_on_with(state().time);
 }
 
 }  // namespace withy

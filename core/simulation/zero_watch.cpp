@@ -59,6 +59,7 @@ ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const
   signs_.resize(values_.size());
   unsure_.assign(values_.size(), -1);
   near_.resize(values_.size());
+  landed_.resize(values_.size());
   end_signs_.resize(values_.size());
   ends_.resize(values_.size());
   for (Row& row : rows_) row.values.resize(values_.size());
@@ -161,10 +162,17 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::leap(const State& state) {
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     if (unsure_[f] >= 0 && std::abs(values_[f] - landed_[f]) <= unsure_[f]) continue;
     const int now = sign(values_[f]);
+    if (now == 0 && looks(f, state.y)) continue;  // on its zero: the side that it came from says whether it passes
     if (signs_[f] * now < 0 && noticed(f, now) && !is_kink(f)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
   }
   return zeros_;
+}
+
+bool ZeroWatch::looks(std::size_t function, std::span<const double> y) const {
+  if (function < switches_ || is_kink(function)) return true;
+  const RunEvent& own = event(function);
+  return !own.looks || own.looks(y);
 }
 
 void ZeroWatch::look_at(const Course& course, double t) {

@@ -65,6 +65,7 @@ class ZeroWatch {
   void remember(Memory& memory) {
     memory(signs_);
     for (double& unsure : unsure_) memory(unsure);
+    for (double& landed : landed_) memory(landed);
   }
 
  private:
@@ -104,6 +105,7 @@ class ZeroWatch {
   void cross_there_and_back(const Course& course, std::size_t f, std::size_t interval);
   /// Whether a function that has this sign now is to be noticed.
   [[nodiscard]] bool noticed(std::size_t function, int direction) const;
+  [[nodiscard]] bool looks(std::size_t function, std::span<const double> y) const;
 
   const Model& model_;
   std::span<const RunEvent> events_;

@@ -279,8 +279,9 @@ TEST(HostedScene, is_studied) {
   const json advice = json::parse(scene.advise("10%", {}, axes));
   EXPECT_TRUE(advice["advice"].is_object()) << advice.dump();
   EXPECT_FALSE(advice.contains("until"));
-  const json ended = json::parse(Scene(scene).set("events.done", "{at: 0.2, stop: true}").advise("10%", {}, axes));
-  EXPECT_THAT(ended["until"].get<std::string>(), testing::HasSubstr("event 'done' ends the run at 0.2 s"));
+  const json ended = json::parse(
+      Scene(scene).set("events.done", "{hinge: shoulder, value: 0.008, stop: true}").advise("10%", {}, axes));
+  EXPECT_THAT(ended["until"].get<std::string>(), testing::HasSubstr("event 'done' ends the run at 0.1"));
 }
 
 // The values of inputs go over from one formulation to the next.

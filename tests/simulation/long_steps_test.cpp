@@ -227,6 +227,24 @@ TEST(LongSteps, AreLookedIntoForAWheelThatComesToMatter) {
   EXPECT_NEAR(static_cast<double>(s.summary.events.size()), 9.5 * 30 / (2 * std::numbers::pi), 1);
 }
 
+// A sampled load makes steps end where the hinge comes to 0.3 rad to the last bit: the side it came from is kept.
+TEST(LongSteps, MeetAnEventWhoseValueIsThatAtASampleToTheLastBit) {
+  test::LoadedScene s(
+      "format: withy/1\ngravity: [0, 0, 0]\ntime: {end: 1, output: 1}\n"
+      "bodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}, b: {type: rigid, mass: 1, inertia: [1, 1, 1, "
+      "0, "
+      "0, 0]}}\n"
+      "hinges:\n  ha: {type: revolute, axis: [0, 0, 1], parent: world, child: a}\n"
+      "  hb: {type: revolute, axis: [0, 0, 1], parent: world, child: b}\n"
+      "motions: {m: {type: constant-rate, hinge: ha, rate: 1}}\n"
+      "loads: {p: {type: pid, hinge: hb, proportional: 1, reference: 0.1, sample: 0.1}}\n"
+      "events: {third: {hinge: ha, value: 0.3}, half: {hinge: ha, value: 0.5}}\n");
+  s.run();
+  ASSERT_EQ(s.summary.events.size(), 2U);
+  EXPECT_NEAR(s.summary.events[0].time, 0.3, 1e-12);
+  EXPECT_NEAR(s.summary.events[1].time, 0.5, 1e-12);
+}
+
 // On a spring of 1 N/m the block follows the ramp, x = t, until the pulse of the impulse √π a w, which leaves
 // √π a w exp(−w²/4) sin(t − t₀).
 TEST(LongSteps, SeeAPulseBesideWhatGoesOnChanging) {
