@@ -314,7 +314,6 @@ bool Stepping::cut_at(double time, std::size_t noted) {
 void Stepping::resume(const State& state, std::span<const double> memory) {
   if (const std::string why = clocks_.refusal(state); !why.empty()) throw std::invalid_argument(why);
   clocks_.forget();
-  if (looks_over_ > 0) looked_until_ = state.time;
   stepper_->resume(state, memory);
   clocks_.go_on_after(state.time);
 }
@@ -326,6 +325,10 @@ void Stepping::remember(Memory& memory) {
   memory(beyond_kink_);
   memory(zeros_at_once_);
   memory(step_evaluations_);
+  // Formulas are looked at in windows from the start on, whoever goes on.
+  memory(start_);
+  memory(looks_over_);
+  if (memory.reading()) looked_until_ = looks_over_ > 0 ? state().time : std::numeric_limits<double>::infinity();
   // Where an event has ended the run what the clocks have to do at that instant is still to come.
   bool due = clocks_.due(state().time);
   memory(due);
