@@ -287,8 +287,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   CertifiedRun result;
   if (prepared.escalates()) {
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
-    result.not_begun = settings.control.stop();
-    result.summary = result.not_begun ? not_begun(prepared) : run_planned(prepared, settings, plan);
+    result.summary = settings.control.stop() ? not_begun(prepared) : run_planned(prepared, settings, plan);
     add_unseen(prepared, result.summary);
     // What is inaccurate here is the choice, and nothing grows.
     if (result.summary.status != RunStatus::inaccurate) result.summary.message += why_it_grew(prepared, result.summary);
@@ -311,8 +310,8 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
     estimate =
         estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
                        settings.estimate == Estimate::always ? Price::any : Price::tenth, settings.control.interrupted);
-  result.estimate_interrupted = result.summary.status != RunStatus::interrupted && settings.control.stop();
-  if (result.estimate_interrupted) estimate = {{}, "not estimated: the estimate was interrupted"};
+  if (result.summary.status != RunStatus::interrupted && settings.control.stop())
+    estimate = {{}, "not estimated: the estimate was interrupted"};
   std::vector<DroppedForces> dropped;
   if (beyond) dropped = dropped_terms(prepared, *beyond, result.summary.validity.along, registry);
   std::string why_not;

@@ -38,8 +38,6 @@ struct RunSettings {
 struct CertifiedRun {
   RunSummary summary;
   Certificate certificate;
-  bool not_begun = false;             ///< interrupted before its first state: there is no checkpoint of it
-  bool estimate_interrupted = false;  ///< the run is whole, and was interrupted while its error was estimated
 };
 
 /// Refuses an integrator that cannot treat these equations. \throws SceneError with its place

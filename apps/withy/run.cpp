@@ -2,6 +2,7 @@
 
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/results.hpp"
+#include "withy/program/progress.hpp"
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/check_columns.hpp"
 #include "withy/results/hdf5_recorder.hpp"
@@ -60,11 +61,11 @@ ExitStatus run(const RunArguments& given) {
                              (has_report_page() ? folder_text(arguments.out)
                                                 : "\nresults in " + arguments.out + ", drawn in its results.svg\n"));
   const ExitStatus status = ended(summary);
-  if (result.run.estimate_interrupted) {
+  if (status != ExitStatus::interrupted && program::interrupted()) {
     complain("interrupted after the run, while its error was estimated: its results are whole; run it again for that");
     return ExitStatus::interrupted;
   }
-  if (status == ExitStatus::interrupted && !result.run.not_begun)
+  if (status == ExitStatus::interrupted && summary.steps.evaluations > 0)
     complain("the same command with --resume goes on from there");
   return status;
 }
