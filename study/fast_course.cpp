@@ -36,7 +36,7 @@ int turns(const Eigen::VectorXd& numbers) {
   return count;
 }
 
-constexpr int enough = 16;  ///< turns: eight periods, so that one more or less is an eighth
+constexpr int enough_turns = 16;  // eight periods, so that one more or less is an eighth
 
 /// A row a sample, this far apart [s].
 Eigen::MatrixXd sampled(const Course& course, double start, double apart) {
@@ -55,7 +55,7 @@ double period_in(const Course& course, double start, double apart) {
   if (numbers.size() == 0 || !numbers.allFinite()) return 0;
   int most = 0;
   for (const auto& column : numbers.colwise()) most = std::max(most, turns(column));
-  return most < enough ? 0 : 2 * static_cast<double>(samples - 1) * apart / most;
+  return most < enough_turns ? 0 : 2 * static_cast<double>(samples - 1) * apart / most;
 }
 
 /// Zero in the place of numbers that go to and fro in samples so close that nothing does: what is no more than
@@ -64,7 +64,7 @@ Course without_rounding(Course course, double start, double too_close) {
   const Eigen::MatrixXd numbers = sampled(course, start, too_close);
   Eigen::VectorXd kept = Eigen::VectorXd::Ones(numbers.cols());
   for (Eigen::Index c = 0; c < numbers.cols(); ++c)
-    if (numbers.col(c).allFinite() && turns(numbers.col(c)) >= enough) kept[c] = 0;
+    if (numbers.col(c).allFinite() && turns(numbers.col(c)) >= enough_turns) kept[c] = 0;
   if ((kept.array() == 1).all()) return course;
   return [course = std::move(course), kept = std::move(kept)](double t) {
     return Eigen::VectorXd(course(t).cwiseProduct(kept));
