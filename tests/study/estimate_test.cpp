@@ -301,23 +301,5 @@ loads:
                            lower + ", stiffness: 3000, dissipation: 0.3, onset: 0.005}\n");
 }
 
-// The mass of the other model moves with its modes; in coarse steps it drifts off.
-TEST(Estimate, OfAFreeBeamThatIsHitIsNotTheDriftOfCoarseSteps) {
-  for (const char* stiffness : {"34", "60"})
-    expect_right_or_unsaid(std::string(R"(format: withy/1
-integrator: {name: dopri5, rtol: 1e-7, atol: 1e-9}
-time: {end: 1.2, output: 0.02}
-bodies:
-  b: {type: beam, length: 3, mass_per_length: 0.8, bending_y: {modes: 3, family: free-free, stiffness: )") +
-                           stiffness + R"(}}
-  bob: {type: rigid, mass: 0.5, inertia: [0.002, 0.002, 0.002, 0, 0, 0]}
-hinges:
-  h: {type: planar, parent: world, child: b}
-  r: {type: weld, parent: b.tip, child: bob}
-loads:
-  hit: {type: force, frame: b.root, law: table, table: [[0.1, 0, 0, 0], [0.11, 0, 33, 0], [0.12, 0, 0, 0]]}
-)");
-}
-
 }  // namespace
 }  // namespace withy::study
