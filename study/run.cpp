@@ -234,6 +234,9 @@ RunSummary not_begun(const Prepared& prepared) {
   summary.status = RunStatus::interrupted;
   summary.final = begun(prepared.model(), *prepared.equations, prepared.scene.initial);
   summary.reached = summary.final.time;
+  const std::size_t speeds = prepared.model().layout().speeds;
+  summary.peak_effort.assign(speeds, 0.0);
+  summary.peak_motion_effort.assign(speeds, 0.0);
   summary.message = "the run was interrupted before it began, while its formulations were chosen: run it again";
   return summary;
 }

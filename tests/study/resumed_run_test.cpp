@@ -53,5 +53,20 @@ TEST(ResumedRun, OfAutoKnowsHowFarTheWholeRunHasBeenFromTheCoarseOne) {
   EXPECT_EQ(rest.summary.message, whole.summary.message);
 }
 
+// A checkpoint would be that of a run in the formulations of no plan.
+TEST(ResumedRun, OfAutoIsNothingWhereItsFormulationsWereNotChosen) {
+  const Prepared prepared = prepare(settling_arm(), plugins());
+  RunSettings settings;
+  int outputs = 0, checkpoints = 0;
+  settings.output = [&](const State&, std::size_t) { ++outputs; };
+  settings.control.interrupted = [] { return true; };
+  settings.checkpoint = [&](const Checkpoint&) { ++checkpoints; };
+  const RunSummary summary = run(prepared, plugins(), settings).summary;
+  EXPECT_EQ(summary.status, RunStatus::interrupted);
+  EXPECT_THAT(summary.message, HasSubstr("before it began"));
+  EXPECT_EQ(summary.peak_effort.size(), prepared.model().layout().speeds);
+  EXPECT_EQ(outputs + checkpoints, 0);
+}
+
 }  // namespace
 }  // namespace withy::study
