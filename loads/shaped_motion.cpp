@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/motion.hpp"
 
 namespace withy {
