@@ -11,7 +11,6 @@ namespace {
 
 using host::Follow;
 using host::Given;
-using host::Place;
 using host::Scene;
 using Names = std::vector<std::string>;
 /// A file, or a name and the text that it stands for.
