@@ -1,9 +1,6 @@
 #include "withy/study/left_out.hpp"
 
-#include <algorithm>
-
 #include "withy/core/plugin/formulation.hpp"
-#include "withy/core/plugin/rod.hpp"
 
 namespace withy::study {
 namespace {
@@ -32,25 +29,14 @@ std::string left_out(const Terms& terms) {
   if (terms.strain == StrainOrder::linear)
     return "second-order kinematics: foreshortening, and with it stiffening and buckling by axial load";
   if (terms.strain == StrainOrder::quadratic) return "the third and higher orders of deflection";
-  return "extension along beams and shear";
-}
-
-/// Whether beams of the model have extension or shear.
-bool stretch(const Model& model) {
-  return std::any_of(model.bodies().begin(), model.bodies().end(), [](const BodyNode& node) {
-    const Rod* rod = node.body->rod();
-    return rod != nullptr && rod->section(rod->length()).elongation.cols() > 0;
-  });
+  return "extension along beams and shear, where no strain is given for them";
 }
 
 }  // namespace
 
 std::string left_out(const ModelAt& model) {
   if (!flexible(model.prepared->model())) return "nothing: no body is flexible";
-  const Model& tree = model.prepared->model();
-  const Terms& terms = model.prepared->scene.formulation->terms();
-  std::string text = left_out(terms);
-  if (terms.strain == StrainOrder::exact && stretch(tree)) text = "nothing but what its strains leave out";
+  std::string text = left_out(model.prepared->scene.formulation->terms());
   std::string bodies;
   for (const auto& own : model.point.bodies) bodies += (bodies.empty() ? "; of " : ", ") + own.first;
   if (bodies.empty()) return text;
