@@ -54,7 +54,7 @@ Joint MjcfJoints::read(const Element& element, const std::string& name) const {
                                           unit * ((*range)[1] - at_zero));
     joint.remark = words + (type == "ball" ? ": it limits the whole angle" : ": see hinge-limit");
   }
-  leave_out(a, joint, "armature");
+  if (type == "ball" || type == "free") leave_out(a, joint, "armature");
   leave_out(a, joint, "frictionloss");
   return joint;
 }

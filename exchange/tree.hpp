@@ -40,7 +40,7 @@ struct Joint {
   double stiffness = 0, damping = 0;     ///< of a spring and damper on the coordinate
   double free_position = 0;              ///< where the spring is slack
   std::optional<Relaxation> relaxation;  ///< gives stiffness and damping (relaxation.hpp)
-  double armature = 0;                   ///< inertia on each speed, which counts for relaxations alone
+  double armature = 0;                   ///< inertia on each speed; of joints of several for relaxations alone
   std::string remark;                    ///< what the file says beside, for the scene's comment
 };
 

@@ -118,6 +118,8 @@ class UrdfWriter {
       origin = link_frame(hinge.parent).inverse() *
                undeformed(body.frames[static_cast<std::size_t>(hinge.parent_frame)]) * hinge.offset;
     }
+    if (hinge.reflected_inertia > 0)
+      out_.remarks.push_back(fmt::format("the reflected inertia of hinge '{}' is left out: URDF has none", hinge.name));
     const auto kernel = hinge.hinge->kernel();
     using Kind = HingeKernel::Kind;
     if (kernel && kernel->kind == Kind::weld) return joint(hinge.name, "fixed", parent, child, origin, nullptr);

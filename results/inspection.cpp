@@ -9,6 +9,7 @@
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/accuracy.hpp"
@@ -63,6 +64,13 @@ std::string parent_of(const Model& model, const HingeNode& hinge) {
          parent.frames[static_cast<std::size_t>(hinge.parent_frame)].name;
 }
 
+/// ", reflected inertia 0.3 kg m²"; empty where there is none.
+std::string reflected_text(const HingeNode& hinge) {
+  if (hinge.reflected_inertia == 0) return {};
+  return fmt::format(", reflected inertia {:.6g} {}", hinge.reflected_inertia,
+                     hinge_rates(*hinge.hinge).front().angular ? "kg m²" : "kg");
+}
+
 Json bodies_json(const Scene& scene) {
   const Model& model = *scene.model;
   Json bodies = Json::array();
@@ -83,7 +91,8 @@ Json bodies_json(const Scene& scene) {
                         {"type", hinge_type.empty() ? "weld" : hinge_type},
                         {"parent", parent_of(model, hinge)},
                         {"child_frame", body.frames[static_cast<std::size_t>(hinge.child_frame)].name},
-                        {"speeds", hinge.hinge->speeds()}}}});
+                        {"speeds", hinge.hinge->speeds()},
+                        {"reflected_inertia", hinge.reflected_inertia}}}});
   }
   return bodies;
 }
@@ -242,12 +251,12 @@ std::string tree_text(const Scene& scene) {
     const BodyNode& body = model.bodies()[static_cast<std::size_t>(e.body)];
     const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(e.body)];
     const std::string own = own_formulation(scene, scene_name(body));
-    out += fmt::format("{}{} {}{}: {}{}, {:.6g} kg{}   [{}: {} at {}{}]\n", e.indent, e.last ? "└─" : "├─",
+    out += fmt::format("{}{} {}{}: {}{}, {:.6g} kg{}   [{}: {} at {}{}{}]\n", e.indent, e.last ? "└─" : "├─",
                        e.level > most_indented ? fmt::format("(level {}) ", e.level) : "", scene_name(body),
                        type_of(scene, "bodies", scene_name(body)),
                        branch.segments > 1 ? fmt::format(" in {} segments", branch.segments) : "", branch.mass,
                        branch.modes > 0 ? fmt::format(", {} mode{}", branch.modes, branch.modes > 1 ? "s" : "") : "",
-                       hinge.name, type_of(scene, "hinges", hinge.name), parent_of(model, hinge),
+                       hinge.name, type_of(scene, "hinges", hinge.name), parent_of(model, hinge), reflected_text(hinge),
                        own.empty() ? "" : ", formulation " + own);
     push_children(e.body, e.level + 1, e.level < most_indented ? e.indent + (e.last ? "   " : "│  ") : e.indent);
   }

@@ -56,6 +56,7 @@ Json linear_model_json(const study::Configuration& c, const study::LinearModel& 
   j["accelerations"] = accelerations;
   j["equilibrium"] = linear.equilibrium;
   j["frozen"] = linear.frozen;
+  j["shaking"] = linear.shaking;
   j["changing"] = linear.changing;
   j["derivatives"] = linear.derivatives;
   j["output_derivatives"] = linear.output_derivatives;

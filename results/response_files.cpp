@@ -106,6 +106,7 @@ Json response_json(const study::Configuration& c, const study::Response& r) {
   j["period"] = s.period;
   j["equilibrium"] = r.model.equilibrium;
   j["frozen"] = r.model.frozen;
+  j["shaking"] = r.model.shaking;
   j["changing"] = r.model.changing;
   j["held"] = c.held_names();
   j["derivatives"] = r.model.derivatives;

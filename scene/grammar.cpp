@@ -98,7 +98,11 @@ const std::vector<ParameterSpec>& hinge_members() {
   static const std::vector<ParameterSpec> members = {
       text("type", "hinge plugin"), text("parent", "what the hinge hangs on: world, a body, or body.frame"),
       text("child", "what it carries: a body, or body.frame"),
-      map("offset", pose_members(), "fixed pose of the hinge frame F in the parent's frame").otherwise(Value::map({}))};
+      map("offset", pose_members(), "fixed pose of the hinge frame F in the parent's frame").otherwise(Value::map({})),
+      number("reflected_inertia", "kg m^2|kg",
+             "of a hinge of one rate: the inertia of its drive's rotor times the square of the gear's ratio")
+          .least(0)
+          .optional()};
   return members;
 }
 

@@ -131,6 +131,12 @@ class TreeBuilder {
       for (std::size_t i = 0; i < rates.size(); ++i)
         if (!rates[i].angular) tree_.names.sliding.add(fmt::format("{}.{}", name, i));
     }
+    if (const Value* reflected = value->find("reflected_inertia"); reflected != nullptr && node.hinge != nullptr) {
+      node.reflected_inertia = reflected->number();
+      if (node.hinge->speeds() != 1 || node.hinge->coordinates() != 1)
+        problems_.error(*reflected, fmt::format("only hinges of one rate have a reflected inertia, and this one has {}",
+                                                node.hinge->speeds()));
+    }
     hinge_nodes_.push_back(std::move(node));
     hinge_values_.emplace_back(name, std::move(made.value));
   }

@@ -48,6 +48,7 @@ std::string end_at_stop(Evaluator& evaluator, double seconds) {
   };
   const RunSummary run =
       simulate(model.model(), *model.equations, *base.scene.integrator, model.scene.initial, options, {});
+  if (evaluator.control().stop()) return {};
   if (run.status == RunStatus::interrupted)
     return fmt::format(
         "a run up to an event that ends it was cut at {:.4g} s, for it had taken {:.2g} s of CPU time: everything is "

@@ -228,7 +228,7 @@ void YardstickSearch::explain(const ReferenceFound& found) {
       "time.end={}), "
       "or for other outputs (--output)",
       known, found.unaffordable ? more_time_text(advice_) + "; or " : "",
-      askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
+      askable ? fmt::format("for --accuracy {}, which this one is good for, ", accuracy_.times(times).option()) : "",
       long_enough ? fmt::format("{:.3g}, up to which they agree", agree) : "...");
   if (!found.trouble.empty())
     advice_.trouble +=
@@ -259,7 +259,9 @@ void YardstickSearch::explain_bending(const Reference& r) {
       "good for: over a run that may come to {:.2g} % of the range of deflections, and no kinematics is offered that "
       "is better. What to do: {}{}, or make the body one in segments; or ask for a shorter time (--set time.end=...)",
       bend_text(r.bend), r.point.formulation, 100 * r.third_order,
-      accuracy_.share && askable ? fmt::format("ask for --accuracy {}; ", accuracy_.times(use).option()) : "",
+      accuracy_.share && askable
+          ? fmt::format("ask for --accuracy {}, which this one is good for; ", accuracy_.times(use).option())
+          : "",
       moving.empty() ? "make the body a beam, which has 'exact'"
                      : fmt::format("give the beams whose modes move their root ({}) a family that does not, as "
                                    "orthogonal-polynomials, with which they have 'exact'",

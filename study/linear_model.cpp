@@ -13,6 +13,8 @@
 #include "withy/study/linear_outputs.hpp"
 #include "withy/study/linear_parts.hpp"
 #include "withy/study/sampled_steady.hpp"
+#include "withy/study/timed_loads.hpp"
+#include "withy/study/turning.hpp"
 
 namespace withy::study {
 namespace {
@@ -46,6 +48,14 @@ std::vector<std::string> changing_loads(const Configuration& c) {
     const auto* law = dynamic_cast<const ChangingLaw*>(load);
     if (law != nullptr && law->changes_gain()) names.push_back(loads[i].name);
   }
+  return names;
+}
+
+/// Loads by which time changes A. What goes in is as the state has it, whatever a run is given later.
+std::vector<std::string> shaking_loads(const Configuration& c, const Turning& turning) {
+  std::vector<std::string> names = timed_loads(c, c.state(), turning).shaking;
+  for (const LoadNode& node : c.prepared().model().loads())
+    if (node.load->input() != nullptr) names.erase(std::remove(names.begin(), names.end(), node.name), names.end());
   return names;
 }
 
@@ -99,7 +109,9 @@ LinearModel about(const Configuration& c, const SmallMotions& motions, const Sam
   for (const Eigen::Index s : motions.free())
     linear.accelerations.emplace_back(c.layout().speed_names[static_cast<std::size_t>(s)], motions.accelerations()[s]);
   linear.changing = changing_loads(c);
-  linear.frozen = check_turn(c.dynamics(), c.state(), c.held()).periodic();
+  const TurnCheck turn = check_turn(c.dynamics(), c.state(), c.held());
+  if (!turn.periodic()) linear.shaking = shaking_loads(c, turn.turning);
+  linear.frozen = turn.periodic() || !linear.shaking.empty();
   linear.equilibrium = at_rest(c) && is_steady(c) && uneven_motions(c.dynamics(), c.state(), c.held()).empty();
   return linear;
 }
@@ -118,16 +130,20 @@ void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearM
   for (const Column& input : linear.inputs) linear.states.push_back(input.name + ".before");
 }
 
-std::string note_of_changing(const LinearModel& linear, double time) {
-  if (linear.changing.empty()) return {};
-  return fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
-                     quoted_list(linear.changing), time);
-}
-
-std::string note_of_frozen(const LinearModel& linear) {
-  return linear.frozen ? "the equations change as hinges move: these are those of one instant and tell no stability "
-                         "(withy modes --floquet looks at a whole turn)"
-                       : "";
+std::vector<std::string> notes_of_instant(const LinearModel& linear, double time) {
+  std::vector<std::string> notes;
+  if (linear.frozen)
+    notes.push_back(
+        linear.shaking.empty()
+            ? "the equations change as hinges move: these are those of one instant and tell no stability (withy modes "
+              "--floquet looks at a whole turn)"
+            : shaking_text(linear.shaking) +
+                  ": these are those of one instant and tell no stability (withy modes --floquet with --period looks "
+                  "at a period after which everything repeats)");
+  if (!linear.changing.empty())
+    notes.push_back(fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
+                                quoted_list(linear.changing), time));
+  return notes;
 }
 
 LinearModel linear_model(const Configuration& c, const Ports& ports) {

@@ -23,8 +23,9 @@ struct LinearModel {
   LinearSystem system;
   std::vector<std::pair<std::string, double>> accelerations;  ///< of the free speeds at the state
   bool equilibrium = false;                                   ///< nothing that is free moves or begins to
-  /// A is that of one place of hinges that move, and changes as they go on: it tells no stability.
+  /// A is that of one instant and tells no stability: it changes as hinges go on that move, or as time does by itself.
   bool frozen = false;
+  std::vector<std::string> shaking;   ///< loads by which time changes A, where no hinge does that moves; no inputs
   std::vector<std::string> changing;  ///< loads whose gain changes with time by itself: it is that at the state's time
   std::string derivatives;            ///< how A was found
   std::string output_derivatives;     ///< how C and D were
@@ -45,10 +46,8 @@ struct Ports {
 /// singular.
 LinearModel linear_model(const Configuration& configuration, const Ports& ports);
 
-/// What is to be known where hinges turn or loads change their gain with time, in a sentence without a full stop; empty
-/// elsewhere.
-std::string note_of_changing(const LinearModel& linear, double time);
-/// Where small motions are about a state whose equations change as hinges move, a sentence; else empty.
-std::string note_of_frozen(const LinearModel& linear);
+/// What is to be known where A is that of one instant, or loads change their gain: sentences without full stops.
+/// \param time [s] of the state
+std::vector<std::string> notes_of_instant(const LinearModel& linear, double time);
 
 }  // namespace withy::study

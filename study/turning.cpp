@@ -232,7 +232,8 @@ std::string timed_text(const std::vector<std::string>& loads) {
   return fmt::format(
       "The load{} '{}' change{} with time, whatever moves, and what is free feels it: this is balanced at this instant "
       "and no state that stays. Take {} away (--set loads.{}=null), or choose the time that is meant (--at).",
-      many ? "s" : "", fmt::join(loads, "', '"), many ? "" : "s", many ? "them" : "it", loads.front());
+      many ? "s" : "", fmt::join(loads, "', '"), many ? "" : "s", many ? "them" : "it",
+      fmt::join(loads, "=null --set loads."));
 }
 
 std::string shaking_text(const std::vector<std::string>& loads) {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/model/closing.hpp"
 #include "withy/core/shape/vibrations.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
+#include "withy/core/simulation/loop_following.hpp"
 
 namespace withy::study {
 namespace {
@@ -37,32 +37,48 @@ struct Vibrating {
   double by_acceleration = 0;
 };
 
+std::vector<Eigen::Index> not_prescribed(const DenseSystem& system) {
+  std::vector<bool> prescribed(system.size);
+  for (const PrescribedRate& p : system.prescribed) prescribed[p.speed] = true;
+  std::vector<Eigen::Index> free;
+  for (std::size_t i = 0; i < system.size; ++i)
+    if (!prescribed[i]) free.push_back(static_cast<Eigen::Index>(i));
+  return free;
+}
+
 /// At a state: η̇ = vᵀ M u and η̈ = vᵀ M u̇ of each vibration v with vᵀ M v = 1. What hinges do that nothing bends is
-/// orthogonal to all of them, and speeds that motions prescribe take no part.
+/// orthogonal to all of them, and speeds that motions prescribe take no part. Of loops the vibrations are those that
+/// keep them closed.
 void add_vibrating(const EquationsOfMotion& equations, const Eigen::MatrixXd& stiffness, const State& state,
                    std::vector<Vibrating>& all) {
   const DenseSystem system = equations.system(state.time, state.y);
   const auto n = static_cast<Eigen::Index>(system.size);
-  std::vector<bool> prescribed(system.size);
-  for (const PrescribedRate& p : system.prescribed) prescribed[p.speed] = true;
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < n; ++i)
-    if (!prescribed[static_cast<std::size_t>(i)]) free.push_back(i);
+  const std::vector<Eigen::Index> free = not_prescribed(system);
   if (free.empty()) return;
   // Strict formulations have no symmetric mass matrix.
   const Eigen::MatrixXd whole = Eigen::Map<const Eigen::MatrixXd>(system.mass.data(), n, n)(free, free),
                         mass = 0.5 * (whole + whole.transpose());
-  const Vibrations found = vibrations(stiffness(free, free), mass);
-  const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(state.y.data() + equations.layout().positions, n)(free);
-  const std::vector<double> u_dot = solve(system);
-  const Eigen::VectorXd a = Eigen::Map<const Eigen::VectorXd>(u_dot.data(), n)(free);
-  const Eigen::VectorXd rates = found.vectors.transpose() * (mass * u);
-  const Eigen::VectorXd accelerations = found.vectors.transpose() * (mass * a);
+  const Eigen::MatrixXd closing = closing_rows(equations, state.y)(Eigen::all, free);
+  const Eigen::MatrixXd moves = closing.rows() == 0
+                                    ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(mass.rows(), mass.cols()))
+                                    : closed_motions(closing, mass.diagonal());
+  if (moves.cols() == 0) return;
+  const Vibrations found =
+      vibrations(moves.transpose() * stiffness(free, free) * moves, moves.transpose() * mass * moves);
+  const Eigen::MatrixXd vectors = moves * found.vectors;
+  std::vector<double> y_dot(equations.size());
+  Work work = equations.make_work();
+  if (!equations.derivatives(state.time, state.y, y_dot, work).ok()) return;
+  const auto speeds_of = [&](const std::vector<double>& y) -> Eigen::VectorXd {
+    return Eigen::Map<const Eigen::VectorXd>(y.data() + equations.layout().positions, n)(free);
+  };
+  const Eigen::VectorXd rates = vectors.transpose() * (mass * speeds_of(state.y));
+  const Eigen::VectorXd accelerations = vectors.transpose() * (mass * speeds_of(y_dot));
   for (Eigen::Index k = found.rigid(); k < found.squares.size(); ++k) {
     const double square = found.squares[k];
     Vibrating v{std::sqrt(square), 0.5 * rates[k] * rates[k], 0, k - found.rigid(),
                 0.5 * accelerations[k] * accelerations[k] / square};
-    const Eigen::VectorXd shares = found.vectors.col(k).cwiseAbs2().cwiseProduct(mass.diagonal());
+    const Eigen::VectorXd shares = vectors.col(k).cwiseAbs2().cwiseProduct(mass.diagonal());
     shares.maxCoeff(&v.speed);
     v.speed = free[static_cast<std::size_t>(v.speed)];
     all.push_back(v);
@@ -112,7 +128,7 @@ std::optional<Indicator> vibrations_followed(const Scene& scene, const Equations
                                              const RunSummary& summary) {
   const Model& model = *scene.model;
   if (scene.source.at("integrator").find("rtol") != nullptr || summary.steps.accepted == 0 ||
-      model.layout().speeds > largest_examined || !loops_of(model).empty())
+      model.layout().speeds > largest_examined)
     return {};
   double whole = 0, states = 0;
   std::vector<Vibrating> all = vibrating_along(model, equations, summary.validity.along, states);

@@ -14,7 +14,7 @@ namespace withy::study {
 /// but follows a slower force, which an implicit integrator is for, counts with the frequency of that motion: what its
 /// accelerations are to its rates. The lowest frequency of a body tells nothing of a run in which a higher mode moves:
 /// energy stays in balance, an implicit integrator is stable, and after some steps the phase is any. Nothing where the
-/// integrator controls its error, little vibrates, loops are closed or the model is too large to be looked at.
+/// integrator controls its error, little vibrates or the model is too large to be looked at.
 std::optional<Indicator> vibrations_followed(const Scene& scene, const EquationsOfMotion& equations,
                                              const RunSummary& summary);
 

@@ -86,6 +86,9 @@ class TreePass {
       for (std::size_t k = 0; k < node.stations.size() && node.stations[k].needed; ++k)
         add_fixed(node.stations[k].carried, of_stations_[node.first_station + k], sums);
       if (node.modes > 0) add_flexible(node, of_nodes_[i], sums);
+      if (node.joint.kind == sweep::Joint::fixed) continue;
+      const Scalar rate = y_[positions_ + node.joint.speed];
+      sums.kinetic += 0.5 * node.joint.reflected * rate * rate;  // 0 of several rates
     }
     return sums;
   }

@@ -78,6 +78,13 @@ void check_content(const BodyNode& node) {
   }
 }
 
+void check_reflected_inertia(const HingeNode& h) {
+  if (!(h.reflected_inertia >= 0) || !std::isfinite(h.reflected_inertia))
+    throw std::invalid_argument("the reflected inertia of hinge '" + h.name + "' is not finite and at least 0");
+  if (h.reflected_inertia > 0 && (h.hinge->speeds() != 1 || h.hinge->coordinates() != 1))
+    throw std::invalid_argument("hinge '" + h.name + "' has a reflected inertia, which is for hinges of one rate");
+}
+
 /// The hinges parents before children, otherwise in the order they are given: passes go through that order again and
 /// again, and place each hinge as soon as its parent is placed. What hangs on no world is left out.
 std::vector<std::size_t> placed(const std::vector<HingeNode>& hinges, const std::vector<int>& inboard) {
@@ -127,6 +134,7 @@ int BodyNode::frame(std::string_view frame_name) const { return find_index(frame
 Model::Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector3 gravity) : gravity_(gravity) {
   const std::size_t n = bodies.size();
   for (const BodyNode& b : bodies) check_content(b);
+  for (const HingeNode& h : hinges) check_reflected_inertia(h);
   std::vector<int> inboard(n, -1);
   for (std::size_t h = 0; h < hinges.size(); ++h) {
     const auto child = static_cast<std::size_t>(hinges[h].child);

@@ -57,6 +57,9 @@ struct HingeNode {
   Pose offset;
   int child = 0;
   int child_frame = 0;
+  /// n² J of a rotor of inertia J that turns n times as fast as a hinge of one rate, by a gear on its axis [kg m²; of a
+  /// slide kg]: an inertia on that rate alone, T = ½ n² J ẋ², since what else turns the rotor is slow beside it.
+  double reflected_inertia = 0;
 };
 
 /// A load in the tree.
@@ -94,8 +97,8 @@ struct MotionNode {
 class Model {
  public:
   /// Builds a tree from bodies and hinges in any order.
-  /// \throws std::invalid_argument where a body has no hinge or two, the hinges make a cycle, or a body's shape or
-  /// frame has a fault (validate.hpp); the text names them.
+  /// \throws std::invalid_argument where a body has no hinge or two, the hinges make a cycle, a body's shape or frame
+  /// has a fault (validate.hpp), or a reflected inertia is none; the text names them.
   Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector3 gravity);
 
   [[nodiscard]] const std::vector<BodyNode>& bodies() const { return bodies_; }

@@ -1,6 +1,7 @@
 #include "withy/core/reference/reference.hpp"
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <stdexcept>
 
 #include "withy/core/model/hosted_motion.hpp"
@@ -137,6 +138,10 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
     all = whole_system(*model_, terms, rods_, seen, wrenches);
   }
   add_elastic_forces(*model_, y, all.f);
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    const auto rate = static_cast<Eigen::Index>(layout.hinges[h].speed);
+    if (layout.hinges[h].speeds == 1) all.M(rate, rate) += model_->hinges()[h].reflected_inertia;
+  }
 
   const auto n = static_cast<Eigen::Index>(layout.speeds);
   DenseSystem s;
@@ -179,7 +184,15 @@ reference::ReferenceTree<double> ReferenceDynamics::untruncated(std::span<const 
   return {*model_, std::move(terms), y};
 }
 
-Energies ReferenceDynamics::energies(std::span<const double> y) const { return untruncated(y).energies(); }
+Energies ReferenceDynamics::energies(std::span<const double> y) const {
+  Energies e = untruncated(y).energies();
+  const Layout& layout = model_->layout();
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h)
+    if (layout.hinges[h].speeds == 1)
+      e.kinetic +=
+          0.5 * model_->hinges()[h].reflected_inertia * std::pow(y[layout.positions + layout.hinges[h].speed], 2);
+  return e;
+}
 
 WorldPose ReferenceDynamics::frame_pose(std::span<const double> y, int body, int frame) const {
   const WorldMotion<double> A = untruncated(y).frame(body, frame, Pose{});

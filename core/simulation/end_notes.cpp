@@ -10,7 +10,8 @@ std::string note_on_jumps(const Model& model, const std::vector<double>& times) 
   std::string text = "Steps were rejected again and again near t =";
   for (const double t : times) text.append(" ").append(brief(t));
   if (model.loads().empty() && model.motions().empty()) return text + " s: what moves there is fast beside the rest.";
-  return text + " s: does a load jump there without declaring it?";
+  return text +
+         " s: something changes there within a step, as where a stop is met or a load jumps without declaring it.";
 }
 
 std::string note_on_missed_events(const Model& model, const State& end) {

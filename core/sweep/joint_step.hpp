@@ -139,4 +139,11 @@ template <class Space>
   }
 }
 
+/// Adds the effort that a reflected inertia takes at acceleration a of the hinge's only rate.
+template <class Space>
+inline void add_reflected(const JointData<Space>& joint, const typename Space::Scalar& a,
+                          typename Space::Scalar* efforts) {
+  if (joint.speeds == 1) efforts[0] += joint.reflected * a;
+}
+
 }  // namespace withy::sweep

@@ -167,6 +167,7 @@ struct JointData {
   bool driven = false;       ///< its rates' accelerations are given, and the efforts on them are found
   bool pose_matters = true;  ///< false on a world without weight, whose accelerations are zero in any axes
   double direction = 1;
+  typename Space::Scalar reflected = 0;  ///< inertia on its only rate, beside what hangs on it
   std::size_t position = 0, positions = 0, speed = 0, speeds = 0;
   const Hinge* hinge = nullptr;
   typename Space::Frame F;  ///< in the parent station's section, the parent node's frame, or the world
@@ -175,6 +176,7 @@ struct JointData {
   explicit JointData(const NodeSpec& node)
       : driven(node.driven),
         direction(node.direction),
+        reflected(node.reflected),
         position(node.slot.position),
         positions(node.slot.positions),
         speed(node.slot.speed),

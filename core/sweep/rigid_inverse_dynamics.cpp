@@ -90,6 +90,8 @@ class NewtonEuler final : public RigidInverseDynamics::Algorithm {
             efforts[link.joint.speed + static_cast<std::size_t>(k)] = Space::dot(Space::Twist::of(h.H.col(k)), F);
         }
       }
+      if (link.joint.kind != Joint::fixed)
+        add_reflected<Space>(link.joint, u_dot[link.joint.speed], efforts + link.joint.speed);
       if (link.parent >= 0) motions[link.parent].F += Space::to_parent(motions[i].SM, F);
     }
   }

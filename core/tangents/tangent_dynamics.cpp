@@ -142,15 +142,25 @@ Eigen::VectorXd TangentDynamics::steady_accelerations(double t) const {
   return a;
 }
 
+Eigen::VectorXd TangentDynamics::reflected() const {
+  const Layout& layout = model_->layout();
+  Eigen::VectorXd inertia = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.speeds));
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h)
+    if (layout.hinges[h].speeds == 1)
+      inertia[static_cast<Eigen::Index>(layout.hinges[h].speed)] = model_->hinges()[h].reflected_inertia;
+  return inertia;
+}
+
 Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   Plain plain;
-  return efforts<double>(t, y, a, {}, plain) + elastic(y) - load_efforts(t, y);
+  return efforts<double>(t, y, a, {}, plain) + reflected().cwiseProduct(a) + elastic(y) - load_efforts(t, y);
 }
 
 Eigen::VectorXd TangentDynamics::terms_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   const Builder<double> build{*this, y, a, {}};
   const Recursion<double> tree(*model_, build.hinges(), build.bodies([](std::size_t) { return false; }));
-  return analysis::sizes_of(tree, wrenches(t, y, tree, nullptr)) + elastic(y).cwiseAbs() + load_sizes(t, y);
+  return analysis::sizes_of(tree, wrenches(t, y, tree, nullptr)) + reflected().cwiseProduct(a).cwiseAbs() +
+         elastic(y).cwiseAbs() + load_sizes(t, y);
 }
 
 Eigen::VectorXd TangentDynamics::stiffness_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a,
@@ -216,7 +226,13 @@ Eigen::VectorXd TangentDynamics::differentiate(double t, std::span<const double>
         columns(i, static_cast<Eigen::Index>(seeds.directions[k] - from)) = r[i].derivatives()[k];
     }
   }
-  return values + elastic(y) - load_efforts(t, y);
+  const Eigen::VectorXd inertia = reflected();
+  // Columns of accelerations come last.
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Index of_acceleration = 2 * n + i - static_cast<Eigen::Index>(from);
+    if (of_acceleration < columns.cols()) columns(i, of_acceleration) += inertia[i];
+  }
+  return values + inertia.cwiseProduct(a) + elastic(y) - load_efforts(t, y);
 }
 
 Stiffness TangentDynamics::stiffness(double t, std::span<const double> y, const Eigen::VectorXd& a) const {

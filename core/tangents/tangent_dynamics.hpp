@@ -130,6 +130,8 @@ class TangentDynamics {
   /// Their magnitudes, load by load.
   [[nodiscard]] Eigen::VectorXd load_sizes(double t, std::span<const double> y) const;
   [[nodiscard]] Eigen::VectorXd elastic(std::span<const double> y) const;
+  /// HingeNode::reflected_inertia, by speeds.
+  [[nodiscard]] Eigen::VectorXd reflected() const;
   [[nodiscard]] Eigen::MatrixXd drift(std::span<const double> y) const;
 
   std::shared_ptr<const Model> model_;

@@ -164,6 +164,7 @@ class Merger {
     n.kernel = h.hinge->kernel();
     n.slot = model_.layout().hinges[b];
     n.driven = model_.driven(b);
+    n.reflected = h.reflected_inertia;
     n.M = root.pose;
     if (body.body->shape().modes() > 0) {
       take_modes(b, n, Pose{});

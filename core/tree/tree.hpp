@@ -43,6 +43,7 @@ struct NodeSpec {
   double direction = 1;   ///< ±1: sense of the hinge coordinate about or along the aligned axis
   Slot slot;              ///< of the hinge
   bool driven = false;    ///< a motion prescribes the hinge's rates
+  double reflected = 0;   ///< HingeNode::reflected_inertia
   int root_station = -1;  ///< station that the inboard hinge holds; −1: the node's frame
   Pose M;                 ///< hinge frame in that section or the node's frame (then identity once aligned)
 

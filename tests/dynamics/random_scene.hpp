@@ -23,12 +23,13 @@ struct SceneWish {
   bool stretching =
       false;             ///< beams have extension and shear, and inertia in bending, without which shear undoes a turn
   bool varying = false;  ///< beams vary along their length, and have modes of their own: strains with kinks
+  bool geared = true;    ///< some hinges of one rate have a reflected inertia
 };
 
 /// Text of a random scene; the same seed gives the same text.
 class RandomScene {
  public:
-  RandomScene(unsigned seed, SceneWish wish) : random_(seed), wish_(wish) {
+  RandomScene(unsigned seed, SceneWish wish) : random_(seed), gears_(seed), wish_(wish) {
     text_ << "format: withy/1\ntime: {end: 1.0}\ngravity: [" << number(-9, 9) << ", " << number(-9, 9) << ", "
           << (wish.planar ? 0.0 : number(-9, 9)) << "]\n";
     std::ostringstream hinges;
@@ -109,6 +110,14 @@ class RandomScene {
     return s.str();
   }
 
+  /// Of a hinge of one rate.
+  std::string gear() {
+    std::ostringstream s;
+    if (wish_.geared && std::uniform_int_distribution<int>(0, 1)(gears_) == 1)
+      s << ", reflected_inertia: " << std::uniform_real_distribution<double>(0.05, 2)(gears_);
+    return s.str();
+  }
+
   void stretch(bool in_space) {
     const auto strain = [this](const char* name, double low, double high) {
       text_ << "    " << name << ": {stiffness: " << number(low, high) << ", modes: " << whole(1, 2)
@@ -169,17 +178,19 @@ class RandomScene {
     const int kind = parent < 0 && wish_.floating && !wish_.planar ? 8 : whole(0, wish_.planar ? 2 : 7);
     if (kind == 8) hinges << "type: free}\n";
     if (kind == 0) hinges << "type: weld}\n";
-    if (kind == 1) hinges << "type: revolute, axis: " << direction() << "}\n";
-    if (kind == 2 && wish_.planar) hinges << "type: prismatic, axis: [0.6, 0.8, 0]}\n";
-    if (kind == 2 && !wish_.planar) hinges << "type: prismatic, axis: " << direction() << "}\n";
+    if (kind == 1) hinges << "type: revolute, axis: " << direction() << gear() << "}\n";
+    if (kind == 2 && wish_.planar) hinges << "type: prismatic, axis: [0.6, 0.8, 0]" << gear() << "}\n";
+    if (kind == 2 && !wish_.planar) hinges << "type: prismatic, axis: " << direction() << gear() << "}\n";
     if (kind == 3) hinges << "type: spherical}\n";
     if (kind == 4) hinges << "type: universal, first_axis: " << direction() << ", second_axis: [0, 1, 0]}\n";
     if (kind == 5) hinges << "type: cylindrical, axis: " << direction() << "}\n";
     if (kind == 6) hinges << "type: planar, normal: " << direction() << ", along: [0, 1, 0]}\n";
-    if (kind == 7) hinges << "type: screw, axis: " << direction() << ", pitch: " << number(-0.5, 0.5) << "}\n";
+    if (kind == 7)
+      hinges << "type: screw, axis: " << direction() << ", pitch: " << number(-0.5, 0.5) << gear() << "}\n";
   }
 
   std::mt19937 random_;
+  std::mt19937 gears_;  ///< of its own, so that these trees are those without gears but for them
   SceneWish wish_;
   std::ostringstream text_;
 };

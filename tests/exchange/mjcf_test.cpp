@@ -165,7 +165,7 @@ TEST(Mjcf, WeightSpringsAndDampersThatTheModelSwitchesOffDoNotAct) {
 }
 
 /// Two carts on one line, one on the other. What a joint feels while the other is free: the first alone, and what is
-/// left of the second when the first gives way. Armature counts in that, and not in the motion.
+/// left of the second when the first gives way. Armature counts in that, and in the motion.
 TEST(Mjcf, ASpringdamperIsAsStiffAsTheInertiaThatTheJointFeelsAsks) {
   const double m = 3, n = 2, armature = 0.7, T = 0.5, ratio = 0.3;
   const auto got = [&](const std::string& option) {
@@ -185,7 +185,7 @@ TEST(Mjcf, ASpringdamperIsAsStiffAsTheInertiaThatTheJointFeelsAsks) {
   };
   const double of_a = m + armature, of_b = n - n * n / (m + n + armature);
   Eigen::Matrix2d M;
-  M << m + n, n, n, n;
+  M << m + n + armature, n, n, n;
   const auto want = [&](double spring, double damper) -> Eigen::Vector2d {
     const double k = spring / (T * T * ratio * ratio), c = damper * 2 / T;
     return M.ldlt().solve(-Eigen::Vector2d(of_a * (k * 0.2 + c * 0.3), of_b * (k * -0.1 + c * 0.4)));

@@ -177,6 +177,33 @@ initial: {bodies: {b: {modes: [0, 0, 0.01, 0, 0]}}}
   EXPECT_TRUE(std::isnan(of("{name: dopri5, rtol: 1e-6, atol: 1e-9}").value)) << "its steps are of its own choice";
 }
 
+// Between a pin and a roller the third vibration is sin 3πx/L, at 28.1 rad/s; of the tree with its loop cut it would be
+// one of a beam whose tip is free, at 33 rad/s.
+TEST(Limits, OfFixedStepsAreOfVibrationsThatKeepLoopsClosed) {
+  const std::string beam = R"(time: {end: 4, output: 0.1}
+bodies:
+  b: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 0.1, modes: 4, family: pinned-pinned}}
+  roller: {type: rigid, mass: 0.02}
+hinges:
+  pin: {type: revolute, axis: [0, 0, 1], parent: world, child: b}
+  slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: roller}
+constraints: {loop: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: b.tip, b: roller}}
+initial: {guess: {hinges: {slide: {position: 1}}}, bodies: {b: {modes: [0, 0, 0.001, 0]}}}
+)";
+  const double third = std::pow(3 * std::numbers::pi, 2) * std::sqrt(0.1);
+  const auto of = [&](const std::string& step) {
+    const Limited run("integrator: {name: gauss, step: " + step + "}\n" + beam, true);
+    EXPECT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
+    for (const Indicator& i : run.certified)
+      if (i.text.find("step times the frequency of what vibrates") == 0) return i;
+    return Indicator{"", NAN, NAN, ""};
+  };
+  const Indicator coarse = of("0.1");
+  EXPECT_NEAR(coarse.value, 0.1 * third, 1e-3 * third * 0.1);
+  EXPECT_THAT(coarse.text, HasSubstr("most of it b.bending_y[3]"));
+  EXPECT_LT(of("0.01").use(), 1);
+}
+
 // A clamped beam of 157 rad/s that bends with a force of 1.57 rad/s, from where it is held at the start, in steps that
 // are long beside its vibration and short beside the force: what an implicit integrator is for. Let go, it rings.
 TEST(Limits, OfFixedStepsAreOfTheFrequencyOfTheMotionThatThereIs) {

@@ -19,6 +19,7 @@ namespace withy::study {
 namespace {
 
 using test::plugins;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -329,6 +330,9 @@ loads:
     const ModesAt at = modes_at({prepared, prepared.scene.initial, {}}, false);
     EXPECT_TRUE(at.frozen()) << load;
     EXPECT_THAT(turn_text(*at.turn), HasSubstr("tell no stability")) << load;
+    const LinearModel linear = linear_model({prepared, prepared.scene.initial, {}}, {{"h"}, {"h"}});
+    EXPECT_TRUE(linear.frozen) << load;
+    EXPECT_THAT(notes_of_instant(linear, 0), ElementsAre(HasSubstr("'f' changes the equations of small motions")));
   }
   // Of what is of second order small motions know nothing, and a push that only time changes leaves them as they are.
   EXPECT_TRUE(balance_of(pendulum + "{type: expression, hinge: h, value: sin(t)*h*h}\n").stability->stable());
@@ -336,6 +340,12 @@ loads:
   const ModesAt at = modes_at({pushed, pushed.scene.initial, {}}, false);
   EXPECT_FALSE(at.frozen());
   EXPECT_FALSE(at.steady->stays.value());
+  EXPECT_FALSE(linear_model({pushed, pushed.scene.initial, {}}, {{"h"}, {"h"}}).frozen);
+  // A weight that is given from outside is what it is at the state.
+  const Prepared given =
+      scene_of(pendulum + "{type: input, frame: b.end, direction: [0, 1, 0], table: [[0, 0], [1, 9]]}\n",
+               {"bodies.b.frames={end: {position: [0, -1, 0]}}"});
+  EXPECT_FALSE(linear_model({given, given.scene.initial, {}}, {{}, {"h"}}).frozen);
 }
 
 /// The exponent of ẍ + (9.81 + 3 sin 2πt)/1.01 x = 0 is that of its monodromy matrix over the second: 0.2358/s.

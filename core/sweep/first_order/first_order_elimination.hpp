@@ -157,6 +157,7 @@ inline int eliminate_joint(const JointData<Spatial>& joint, const FirstOrderStat
     e.y[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], p.zero);
     for (int j = 0; j <= i; ++j) e.L[i * k + j] = Spatial::dot(e.Y[i].zero, e.H[j]);
   }
+  e.L[0] += joint.reflected;  // 0 of several rates
   const int sign = factorize_indefinite<-1>(e.L, k);
   if (sign == 0) return 0;
   solve_lower<-1>(e.L, k, e.Y);
@@ -186,7 +187,7 @@ template <class Space, int N>
   } else if (single(joint.kind)) {
     const bool turns = joint.kind == Joint::rotate;
     const Orders<Space> U = turns ? I.turn_column() : I.slide_column();
-    const double inertia = component<Space>(joint.kind, U.zero);
+    const double inertia = component<Space>(joint.kind, U.zero) + joint.reflected;
     if (!(std::abs(inertia) > 0)) return 0;
     if (inertia < 0) sign = -sign;
     w.U = U;

@@ -57,8 +57,10 @@ inline void first_order_effort(const FirstOrderNode<Space>& node, const FirstOrd
       h[i] += dot(Orders<Space>{station.J[static_cast<std::size_t>(i)], J1[i]}, force.on_modes);
   }
   const JointData<Space>& joint = node.joint;
-  if (joint.kind != Joint::fixed)
+  if (joint.kind != Joint::fixed) {
     driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed, F.zero, s.result + joint.speed);
+    add_reflected<Space>(joint, s.efforts[joint.speed], s.result + joint.speed);
+  }
   if (node.parent < 0) return;
   with_outer(node, s, [&](auto& outer) {
     outer.p += to_parent<Space>(w.SM, F);

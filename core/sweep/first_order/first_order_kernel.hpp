@@ -47,6 +47,7 @@ template <class Space, int N>
     if (s.driven != nullptr) {
       double* efforts = s.driven + joint.speed;
       driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed, (w.I * A + w.p).zero, efforts);
+      add_reflected<Space>(joint, s.result[joint.speed], efforts);
       for (std::size_t i = 0; i < joint.speeds && s.weight != nullptr; ++i) efforts[i] -= s.weight[joint.speed + i];
     } else {
       for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = 0;

@@ -130,6 +130,7 @@ template <class Space, class Many>
 void put(std::size_t lane, const JointData<Space>& from, JointData<Many>& to) {
   to.kind = from.kind, to.direction = from.direction, to.driven = from.driven, to.pose_matters = from.pose_matters;
   to.position = from.position, to.positions = from.positions, to.speed = from.speed, to.speeds = from.speeds;
+  put(lane, from.reflected, to.reflected);
   put(lane, from.F, to.F);
 }
 

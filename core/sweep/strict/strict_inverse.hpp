@@ -69,8 +69,11 @@ inline void strict_effort(const StrictNode<Space>& node, const StrictState<Space
   // What the body answers at q̈ and its children's wrenches given.
   const Twist F = r.P * w.A + r.Q * w.A0 + r.p, F0 = r.T * w.A0 + r.p0;
   const JointData<Space>& joint = node.joint;
-  if (joint.kind != Joint::fixed)
+  if (joint.kind != Joint::fixed) {
+    const double acceleration = s.result[joint.speed];
     driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed, F, s.result + joint.speed);
+    add_reflected<Space>(joint, acceleration, s.result + joint.speed);
+  }
   if (node.parent < 0) return;
   Response<Space>& outer = outer_response(node, s);
   outer.p += Space::to_parent(w.SM, F);

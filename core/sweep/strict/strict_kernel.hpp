@@ -92,6 +92,7 @@ inline void eliminate_rate(Response<Space>& r, const typename Space::Twist& colu
     e.d[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], r.p);
     for (int j = 0; j < k; ++j) D[j * k + i] = Spatial::dot(e.H[j], column[i]);
   }
+  D[0] += joint.reflected;  // 0 of several rates
   const int sign = solve_general<-1>(D, k, e.row, e.row0, e.d, scale);
   if (sign == 0) return 0;
   for (int i = 0; i < k; ++i) eliminate_rate(r, column[i], column0[i], e.row[i], e.row0[i], e.d[i]);
@@ -120,7 +121,7 @@ inline int strict_pass_inward(const StrictNode<Space>& node, const StrictState<S
     const bool turns = joint.kind == Joint::rotate;
     const typename Space::Twist column =
         turns ? r.P.turn_column() + r.Q.turn_column() : r.P.slide_column() + r.Q.slide_column();
-    const double pivot = component<Space>(joint.kind, column);
+    const double pivot = component<Space>(joint.kind, column) + joint.reflected;
     if (!(std::abs(pivot) > 0)) return 0;
     if (pivot < 0) sign = -sign;
     const double inverse = 1 / pivot;
@@ -241,6 +242,7 @@ template <class Space, int N>
   if (joint.driven) [[unlikely]] {
     driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed,
                           w.response.P * w.A + w.response.Q * w.A0 + w.row, s.efforts + joint.speed);
+    add_reflected<Space>(joint, s.result[joint.speed], s.efforts + joint.speed);
   } else if (single(joint.kind)) {
     const double x = w.u - Space::dot(w.row, w.A) - Space::dot(w.row0, w.A0);
     w.A += along<Space>(joint.kind, x);

@@ -194,6 +194,7 @@ inline auto eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
     e.y[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], p);
     for (int j = 0; j <= i; ++j) e.L[i * k + j] = Spatial::dot(e.Y[i], e.H[j]);
   }
+  e.L[0] += joint.reflected;  // 0 of several rates
   if (!factorize<-1>(e.L, k)) return false;
   solve_lower<-1>(e.L, k, e.Y);
   solve_lower<-1>(e.L, k, e.y);
@@ -220,7 +221,7 @@ inline auto pass_inward(const SymmetricNode<Space>& node, const SymmetricState<S
   } else if (single(joint.kind)) {
     const bool turns = joint.kind == Joint::rotate;
     const Twist U = turns ? I.turn_column() : I.slide_column();
-    const Scalar inertia = turns ? U.turn() : U.slide();
+    const Scalar inertia = (turns ? U.turn() : U.slide()) + joint.reflected;
     good = positive(inertia);
     if (none(good)) return good;
     const Scalar inverse = 1 / inertia;

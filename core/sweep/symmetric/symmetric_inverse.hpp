@@ -125,6 +125,7 @@ template <class Space, int N, Flavor flavor>
       for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = Space::dot(H[i], F);
     }
   }
+  if (joint.kind != Joint::fixed) add_reflected<Space>(joint, s.efforts[joint.speed], s.result + joint.speed);
   if (node.parent < 0) return;
   *Outer(node, s).p += Space::to_parent(w.SM, F);
 }

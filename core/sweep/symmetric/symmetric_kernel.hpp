@@ -28,6 +28,7 @@ template <class Space, int N, Flavor flavor>
       const auto& asked = *at<DrivenWork<Space>>(s.work, node.work_driven);
       driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed, asked.I * A + asked.p,
                             s.driven + joint.speed);
+      add_reflected<Space>(joint, s.result[joint.speed], s.driven + joint.speed);
     } else {
       for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = 0;
     }
