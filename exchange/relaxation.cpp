@@ -25,6 +25,7 @@ void settle_relaxation(Tree& tree, const Scene& rigid, Diagnostics& diagnostics)
   Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(system.mass.data(), size, size);
   const auto slot_of = [&](const Joint& joint) { return *equations->layout().hinge(joint.name); };
   for (const Joint& joint : tree.joints) {
+    if (joint.has_reflected_inertia()) continue;  // M has it
     const Slot slot = slot_of(joint);
     const auto first = static_cast<Eigen::Index>(slot.speed), count = static_cast<Eigen::Index>(slot.speeds);
     M.diagonal().segment(first, count).array() += joint.armature;

@@ -115,8 +115,7 @@ class SceneWriter {
     if (flexible_.of_link.contains(joint.child) || !joint.point.isZero(0)) child += '.' + frame_name(joint);
     if (joint.type == "revolute" || joint.type == "prismatic") rest += ", axis: " + in_one_line(joint.axis);
     if (joint.type == "planar") rest += ", normal: " + in_one_line(joint.axis) + along(joint.axis);
-    if (joint.armature > 0 && (joint.type == "revolute" || joint.type == "prismatic"))
-      rest += fmt::format(", reflected_inertia: {}", joint.armature);
+    if (joint.has_reflected_inertia()) rest += fmt::format(", reflected_inertia: {}", joint.armature);
     const std::string members = on_beam ? "" : pose_members(joint.offset);
     if (!members.empty()) rest += ", offset: {" + members + "}";
     out_ += fmt::format("  {}: {{type: {}, parent: {}, child: {}{}}}   # {}:{}{}\n", joint.name, joint.type, parent,

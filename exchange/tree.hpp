@@ -42,6 +42,11 @@ struct Joint {
   std::optional<Relaxation> relaxation;  ///< gives stiffness and damping (relaxation.hpp)
   double armature = 0;                   ///< inertia on each speed; of joints of several for relaxations alone
   std::string remark;                    ///< what the file says beside, for the scene's comment
+
+  /// Whether its armature stands in the scene.
+  [[nodiscard]] bool has_reflected_inertia() const {
+    return armature > 0 && (type == "revolute" || type == "prismatic");
+  }
 };
 
 struct Tree {

@@ -153,7 +153,8 @@ std::string response_text(const study::Configuration& c, const study::Response& 
                                           : "; the state is no equilibrium: this is the neighbourhood of a motion "
                                             "(withy equilibrium --out FILE keeps one for --at)",
                       r.model.output_derivatives == "exact" ? "" : "; output " + r.model.output_derivatives);
-  for (const std::string& note : study::notes_of_instant(r.model, c.state().time)) text += note + '\n';
+  for (const std::string& note : {study::note_of_frozen(r.model), study::note_of_changing(r.model, c.state().time)})
+    if (!note.empty()) text += note + '\n';
   if (r.opened) text += static_words(r) + "; " + peak_words(r) + '\n';
   text += root_rows(r, r.roots.poles, true) + root_rows(r, r.roots.zeros, false) + peak_rows(r);
   if (const auto hidden = r.roots.hidden.size(); hidden > 0)

@@ -130,20 +130,20 @@ void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearM
   for (const Column& input : linear.inputs) linear.states.push_back(input.name + ".before");
 }
 
-std::vector<std::string> notes_of_instant(const LinearModel& linear, double time) {
-  std::vector<std::string> notes;
-  if (linear.frozen)
-    notes.push_back(
-        linear.shaking.empty()
-            ? "the equations change as hinges move: these are those of one instant and tell no stability (withy modes "
-              "--floquet looks at a whole turn)"
-            : shaking_text(linear.shaking) +
-                  ": these are those of one instant and tell no stability (withy modes --floquet with --period looks "
-                  "at a period after which everything repeats)");
-  if (!linear.changing.empty())
-    notes.push_back(fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
-                                quoted_list(linear.changing), time));
-  return notes;
+std::string note_of_frozen(const LinearModel& linear) {
+  if (!linear.frozen) return {};
+  return linear.shaking.empty()
+             ? "the equations change as hinges move: these are those of one instant and tell no stability (withy modes "
+               "--floquet looks at a whole turn)"
+             : shaking_text(linear.shaking) +
+                   ": these are those of one instant and tell no stability (withy modes --floquet with --period looks "
+                   "at a period after which everything repeats)";
+}
+
+std::string note_of_changing(const LinearModel& linear, double time) {
+  if (linear.changing.empty()) return {};
+  return fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
+                     quoted_list(linear.changing), time);
 }
 
 LinearModel linear_model(const Configuration& c, const Ports& ports) {

@@ -46,8 +46,9 @@ struct Ports {
 /// singular.
 LinearModel linear_model(const Configuration& configuration, const Ports& ports);
 
-/// What is to be known where A is that of one instant, or loads change their gain: sentences without full stops.
-/// \param time [s] of the state
-std::vector<std::string> notes_of_instant(const LinearModel& linear, double time);
+/// What is to be known where A is that of one instant, a sentence without a full stop; empty elsewhere.
+std::string note_of_frozen(const LinearModel& linear);
+/// The same where loads change their gain. \param time [s] of the state
+std::string note_of_changing(const LinearModel& linear, double time);
 
 }  // namespace withy::study

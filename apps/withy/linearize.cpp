@@ -23,7 +23,9 @@ ExitStatus linearize(const LinearizeArguments& arguments) {
     const nlohmann::ordered_json json = linear_model_json(c, linear);
     if (folder != nullptr) write_linear_model(folder->path(), json, linear);
     print(json_text(json));
-    for (const std::string& note : study::notes_of_instant(linear, c.state().time)) complain(note);
+    // A state that does not stay is one instant of a motion anyhow.
+    if (const std::string note = study::note_of_frozen(linear); linear.equilibrium && !note.empty()) complain(note);
+    if (const std::string note = study::note_of_changing(linear, c.state().time); !note.empty()) complain(note);
   } catch (const std::domain_error& e) {
     complain(e.what());
     return ExitStatus::stopped;

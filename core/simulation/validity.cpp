@@ -53,7 +53,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       held_{0, std::vector<double>(equations.size())},
       fastest_(held_),
       excess_(worthwhile),
-      along_(beyond != nullptr && model.layout().speeds <= most_speeds_along ? equations.size() : 0, most_along),
+      along_(model.layout().speeds <= most_speeds_along ? equations.size() : 0, most_along),
       closely_(beyond != nullptr && equations.linearly_implicit() == nullptr ? equations.size() : 0, most_closely),
       busiest_(model.layout().positions, model.layout().speeds, equations.size()),
       look_interval_((look_cost + (loops_.any() ? model.layout().speeds : 0)) * samples_per_cost) {

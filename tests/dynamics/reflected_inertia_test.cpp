@@ -101,7 +101,7 @@ TEST(ReflectedInertiaOfAScene, IsRefusedWhereItIsOfNoRate) {
     return std::string("accepted");
   };
   EXPECT_THAT(refusal("type: spherical, reflected_inertia: 1"),
-              HasSubstr("refused.yaml:3:54: /hinges/h/reflected_inertia: only hinges of one rate have a reflected "
+              HasSubstr("refused.yaml:3:50: /hinges/h/reflected_inertia: only hinges of one rate have a reflected "
                         "inertia, and this one has 3"));
   EXPECT_THAT(refusal("type: weld, reflected_inertia: 1"), HasSubstr("and this one has 0"));
   EXPECT_THAT(refusal("type: revolute, axis: [0, 0, 1], reflected_inertia: -1"),

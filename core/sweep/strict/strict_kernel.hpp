@@ -90,9 +90,8 @@ inline void eliminate_rate(Response<Space>& r, const typename Space::Twist& colu
     e.row[i] = Spatial::transposed_times(r.P, e.H[i]);
     e.row0[i] = Spatial::transposed_times(r.Q, e.H[i]);
     e.d[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], r.p);
-    for (int j = 0; j < k; ++j) D[j * k + i] = Spatial::dot(e.H[j], column[i]);
+    for (int j = 0; j < k; ++j) D[j * k + i] = Spatial::dot(e.H[j], column[i]) + joint.reflected;  // 0 of several rates
   }
-  D[0] += joint.reflected;  // 0 of several rates
   const int sign = solve_general<-1>(D, k, e.row, e.row0, e.d, scale);
   if (sign == 0) return 0;
   for (int i = 0; i < k; ++i) eliminate_rate(r, column[i], column0[i], e.row[i], e.row0[i], e.d[i]);
