@@ -115,6 +115,7 @@ std::string shown_number(double x) { return std::isnan(x) ? "nan" : brief(x); }
 }  // namespace
 
 std::string nonfinite_number(const Layout& layout, const State& state) {
+  if (state.y.size() != layout.size()) return {};  // of equations that are another's
   const auto told = [&](const std::string& what, std::size_t at) { return what + " is " + shown_number(state.y[at]); };
   const auto of_slots = [&](const std::vector<Slot>& slots) -> std::string {
     for (const Slot& slot : slots)

@@ -75,7 +75,7 @@ struct NonfiniteRates {
 NonfiniteRates nonfinite_rates(const Model& model, const State& state, double ahead);
 
 /// The first of a state's numbers that is not finite, discrete states left out: "the coordinate 'elbow.0' is nan".
-/// Empty where all are finite. \param state laid out as `layout` says
+/// Empty where all are finite, or the state has another count of numbers than the layout.
 std::string nonfinite_number(const Layout& layout, const State& state);
 
 /// Names what is not finite at the state or, for loads, up to `ahead` seconds later: loads, what they hold,
