@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "withy/core/model/columns.hpp"
 #include "withy/core/model/compiled_model.hpp"
 #include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/mode_family.hpp"
@@ -329,6 +330,63 @@ TEST(Validate, names_functions_that_are_not_as_many_or_whose_derivatives_are_non
   const std::string curvature = fault([](Waves& w) { w.curvature = 2; });
   EXPECT_TRUE(begins(curvature, "function 1 has the curvature -0.541")) << curvature;
   EXPECT_EQ(fault([](Waves& w) { w.curvature = 2; }, Strain::torsion), "") << "twist has none";
+}
+
+/// A point at its tip that one mode of a name moves.
+class Named final : public withy::Body {
+ public:
+  explicit Named(std::string mode) {
+    shape_.mode_names = {std::move(mode)};
+    shape_.particles = {{1, tip()}};
+    shape_.stiffness = Eigen::MatrixXd::Ones(1, 1);
+    shape_.damping = Eigen::MatrixXd::Zero(1, 1);
+  }
+  const ModalShape& shape() const override { return shape_; }
+  std::optional<PointExpansion> station(const StationName&) const override { return tip(); }
+  std::string stations() const override { return "root, tip"; }
+  static PointExpansion tip() {
+    PointExpansion at = PointExpansion::rigid({1, 0, 0}, 1);
+    at.phi(1, 0) = 1;
+    return at;
+  }
+
+ private:
+  ModalShape shape_;
+};
+
+/// Turns about z; its columns are NAME and NAME.rate.
+class Turning final : public withy::Hinge {
+ public:
+  std::size_t coordinates() const override { return 1; }
+  std::size_t speeds() const override { return 1; }
+  void reference(std::span<double> x) const noexcept override { x[0] = 0; }
+  void motion(std::span<const double>, std::span<const double>, withy::HingeMotion&) const noexcept override {}
+  void derivatives(std::span<const double>, std::span<const double>, std::span<double>) const noexcept override {}
+  void normalize(std::span<double>) const noexcept override {}
+  std::optional<withy::HingeKernel> kernel() const override {
+    return withy::HingeKernel{withy::HingeKernel::Kind::revolute, withy::Vector3::UnitZ()};
+  }
+};
+
+TEST(Validate, names_modes_with_the_name_of_another_column) {
+  const auto fault = [](const std::string& mode, const std::string& hinge) {
+    withy::BodyNode body{"bar", std::make_shared<Named>(mode), {}};
+    body.frames = {{"root", Named::tip(), {}}, {"tip", Named::tip(), {}}};
+    withy::HingeNode joint;
+    joint.name = hinge;
+    joint.hinge = std::make_shared<Turning>();
+    return withy::mode_name_fault(withy::Model({body}, {joint}, withy::Vector3::Zero()), 0);
+  };
+  EXPECT_EQ(fault("bending", "bar"), "");
+  EXPECT_EQ(fault("tip", "bar"), "");
+  EXPECT_EQ(fault("tip.x", "h"),
+            "a mode is named 'tip.x', and tables of results have the column 'bar.tip.x' of the body's tip");
+  EXPECT_EQ(fault("tip[deflection_y]", "h"),
+            "a mode is named 'tip[deflection_y]', and tables of results have the column 'bar.tip.deflection_y' of the "
+            "body's tip");
+  EXPECT_EQ(fault("rate", "h"), "");
+  EXPECT_EQ(fault("rate", "bar"),
+            "a mode is named 'rate', and tables of results have the column 'bar.rate' of the hinge 'bar'");
 }
 
 /// Compiles nothing, or throws.
