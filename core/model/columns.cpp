@@ -26,7 +26,7 @@ constexpr std::array<const char*, 6> tip_columns = {
     "tip.x", "tip.y", "tip.z", "tip.deflection_x", "tip.deflection_y", "tip.deflection_z"};
 
 /// All that tables tell of a hinge, of its motion too if it has one.
-std::vector<std::string> names_of(const HingeNode& hinge) {
+std::vector<std::string> column_names_of(const HingeNode& hinge) {
   std::vector<std::string> names;
   for (const Column& c : coordinate_columns(hinge)) names.push_back(c.name);
   for (const Column& c : rate_columns(hinge)) names.push_back(c.name);
@@ -49,7 +49,7 @@ std::string mode_name_fault(const Model& model, std::size_t body) {
   const bool has_tip = !node.segment && node.frame("tip") >= 0;  // a whole in segments has another name
   const int hinge = model.hinge(node.name);
   std::vector<std::string> of_hinge;
-  if (hinge >= 0) of_hinge = names_of(model.hinges()[static_cast<std::size_t>(hinge)]);
+  if (hinge >= 0) of_hinge = column_names_of(model.hinges()[static_cast<std::size_t>(hinge)]);
   for (const std::string& mode : node.body->shape().mode_names) {
     const std::string spelled = spelled_in_tables(mode);
     for (const std::string& name : {spelled, spelled + ".rate"}) {
