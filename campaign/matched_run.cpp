@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "withy/core/simulation/event_actions.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/core/simulation/stop.hpp"
 #include "withy/results/result_columns.hpp"
@@ -49,7 +50,7 @@ class MatchingObserver final : public SteppingObserver {
     while (due(stepper.state().time)) {
       sample_ = stepper.state();
       sample_.time = data_.times[next_];
-      stepper.interpolate(sample_.time, sample_.y);
+      interpolate_step(stepper, sample_.time, sample_.y);
       if (!read(sample_)) return false;
     }
     return true;
@@ -92,7 +93,7 @@ MatchedRun run_prepared(const study::Prepared& prepared, const Measured& data, c
   const State start = begun(*scene.model, equations, scene.initial);
   const double end = std::max(data.times.back(), start.time);
   EventActions actions(*scene.model, equations, scene.events);
-  Stepping loop(*scene.model, equations, scene.integrator->start(equations, start),
+  Stepping loop(*scene.model, equations, start_stepper(*scene.integrator, equations, start),
                 {.end = end, .output = scene.output, .events = actions.watched(), .actions = &actions});
   MatchingObserver observer(prepared, data, control);
   std::vector<double> rates(equations.size());

@@ -125,6 +125,7 @@ RunResult run_result(const study::Prepared& prepared, Registry& registry, study:
   std::vector<OutputStatistics> statistics;
   settings.statistics = &statistics;
   auto [summary, certificate] = study::run(prepared, registry, settings);
+  table.note_blanks(summary);
   result.status = withy::name(summary.status);
   result.message = summary.message;
   nlohmann::ordered_json json = run_json(prepared.scene, summary, certificate);

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/session.hpp"
 #include "withy/host/names.hpp"
 #include "withy/host/snapshot_parts.hpp"
@@ -37,7 +38,7 @@ struct Simulation::Parts {
       input_loads.push_back(l);
     }
     for (const Column& column : table.columns()) outputs.push_back({column.name, column.unit});
-    for (const std::string& remark : session.stepper().remarks()) library.log("The integrator: " + remark + ".");
+    for (const std::string& remark : remarks_of(session.stepper())) library.log("The integrator: " + remark + ".");
   }
 
   const std::vector<double>& row() {
@@ -46,10 +47,18 @@ struct Simulation::Parts {
     return values;
   }
 
+  SessionEnd go(double t, bool halt) {
+    try {
+      return session.advance(t, halt);
+    } catch (const IntegratorError& e) {
+      study::refuse_integrator(*prepared, e.deed());
+    }
+  }
+
   /// \returns whether t is reached
   bool advance(double t, bool halt) {
     row_is_now = false;
-    const SessionEnd end = session.advance(t, halt);
+    const SessionEnd end = go(t, halt);
     events.clear();
     for (const EventTime& e : session.events()) events.push_back({e.name, e.time, e.direction});
     if (end.status == RunStatus::completed) return end.reached;

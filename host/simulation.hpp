@@ -71,7 +71,8 @@ class Simulation {
 
   /// Integrates to the time t [s] and lands on it bit by bit; events on the way are passed, those that stop a run too.
   /// \throws SimulationStopped where it cannot go on, or is interrupted: it may then go on. std::invalid_argument where
-  /// t lies before the present time.
+  /// t lies before the present time; SceneError where the integrator's plugin fails, after which nothing can be
+  /// trusted.
   void step(double t);
   /// The same, but halts where an event that stops a run comes first. \returns whether t is reached
   bool advance_to(double t);

@@ -1,7 +1,9 @@
 #include "withy/results/recorded_run.hpp"
 
+#include <fmt/format.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "withy/results/certificate_json.hpp"
@@ -99,6 +101,7 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   std::vector<OutputStatistics> statistics;
   settings.statistics = &statistics;
   recorded.run = study::run(prepared, registry, settings);
+  table->note_blanks(recorded.run.summary);
   table.reset();  // of a large model what comes is as large
   give_back_memory(prepared.model());
   if (!statistics.empty()) recorded.outputs = statistics_json(statistics);
@@ -127,6 +130,22 @@ RunTable::RunTable(const study::Prepared& prepared, Recorder& recorder) : record
   for (const Rung& rung : prepared.rungs)
     columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
   recorder_.begin(columns_.front().columns());
+}
+
+void RunTable::note_blanks(RunSummary& summary) const {
+  std::vector<std::size_t> rows;
+  for (const ResultColumns& columns : columns_) {
+    rows.resize(std::max(rows.size(), columns.nonfinite().size()));
+    for (std::size_t i = 0; i < columns.nonfinite().size(); ++i) rows[i] += columns.nonfinite()[i];
+  }
+  if (std::all_of(rows.begin(), rows.end(), [](std::size_t n) { return n == 0; })) return;
+  const std::vector<Column>& all = columns_.front().columns();
+  std::string list;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i] > 0)
+      list += fmt::format("{}'{}' in {}", list.empty() ? "" : ", ", all[all.size() - rows.size() + i].name, rows[i]);
+  summary.message += fmt::format("{}Outputs gave no finite number in rows of the table: {} of them.",
+                                 summary.message.empty() ? "" : " ", list);
 }
 
 std::vector<std::string> run_content() {

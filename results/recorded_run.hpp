@@ -31,6 +31,8 @@ class RunTable {
   [[nodiscard]] const std::vector<std::string>& frames() const { return columns_.front().frames(); }
   /// For RunSettings::seen: a row then costs no pass of its own.
   [[nodiscard]] Observation& seen() { return columns_.front().seen(); }
+  /// Adds to what the summary says which outputs had no finite number in how many of the rows; nothing where all had.
+  void note_blanks(RunSummary& summary) const;
 
  private:
   Recorder& recorder_;

@@ -63,7 +63,8 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
       seen_(equations.make_observation()),
       sensors_(sensors, equations),
       work_(model.motions().empty() ? Work(0) : equations.make_work()),
-      efforts_(model.layout().speeds) {}
+      efforts_(model.layout().speeds),
+      nonfinite_(sensors_.columns().size()) {}
 
 const ResultColumns::Names& ResultColumns::named() const {
   auto& [columns, frames] = names_;
@@ -172,7 +173,11 @@ void ResultColumns::append_sensors(const State& state) {
   const std::size_t first = row_.size();
   row_.resize(first + sensors_.columns().size());
   const std::span<double> values = std::span(row_).subspan(first);
-  if (!sensors_.read(state, values)) std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
+  if (!sensors_.read(state, values)) {
+    std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) nonfinite_[i] += std::isfinite(values[i]) ? 0 : 1;
 }
 
 void ResultColumns::append_motion_efforts(const State& state) {

@@ -36,6 +36,9 @@ class ResultColumns {
   const std::vector<double>& row_of_seen(const State& state);
   /// For RunOptions::seen: a row then costs no pass of its own.
   [[nodiscard]] Observation& seen() { return *seen_; }
+  /// Rows so far in which a sensor has given no finite number though the state has accelerations; one a column of the
+  /// sensors, the last ones of `columns()`.
+  [[nodiscard]] const std::vector<std::size_t>& nonfinite() const { return nonfinite_; }
 
  private:
   /// What the columns are called; found when it is asked for, since many ask for rows alone.
@@ -57,6 +60,7 @@ class ResultColumns {
   SensorReader sensors_;
   Work work_;  ///< for the efforts of motions
   std::vector<double> efforts_, row_;
+  std::vector<std::size_t> nonfinite_;
 };
 
 /// The state that a row tells of: time, coordinates and rates; discrete states and work are zero.

@@ -11,6 +11,7 @@
 #include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/floating_point.hpp"
+#include "withy/core/plugin/formulation.hpp"
 #include "withy/scene/check.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene_parts.hpp"
@@ -26,6 +27,21 @@ struct Made {
   std::unique_ptr<Interface> object;          ///< null after reported problems
 };
 
+/// What is wrong with an object that a plugin has made, or empty. A formulation is asked what it is here, so that what
+/// it throws is reported where the scene names it.
+template <class Interface>
+std::string fault_of_made(const Interface& object) {
+  if constexpr (std::is_same_v<Interface, Hinge>) {
+    if (const std::string fault = find_fault(object); !fault.empty()) return "made a motion that cannot be: " + fault;
+  } else if constexpr (std::is_same_v<Interface, Motion>) {
+    if (const std::string fault = find_fault(object); !fault.empty()) return "made a course that cannot be: " + fault;
+  } else if constexpr (std::is_same_v<Interface, Formulation>) {
+    static_cast<void>(object.terms());
+    static_cast<void>(object.standing());
+  }
+  return {};
+}
+
 /// Makes the object; every problem is reported at the value's key.
 /// \throws PluginError where a library the plugin asks for is refused, or the plugin changes the processor's
 /// arithmetic.
@@ -36,29 +52,36 @@ std::unique_ptr<Interface> make_object(const Plugin<Interface>& plugin, const Va
   const auto blame = [&](const std::string& why) {
     checker.key_error(path, fmt::format("{} '{}' {}", kind_name<Interface>(), plugin.id, why));
   };
+  const auto reported = [&](const std::string& what, auto&& call) {
+    try {
+      call();
+      return true;
+    } catch (const PluginError&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& e) {
+      blame(what + ": " + e.what());
+    } catch (...) {
+      blame(what + ": it throws what is no exception of C++");
+    }
+    return false;
+  };
   std::unique_ptr<Interface> object;
   FloatingPointGuard arithmetic;
-  try {
-    object = plugin.make(value, checker.make_context());
-  } catch (const PluginError&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    blame(std::string("cannot be made: ") + e.what());
-    return nullptr;
-  } catch (...) {
-    blame("cannot be made: it throws what is no exception of C++");
-    return nullptr;
-  }
+  if (!reported("cannot be made", [&] { object = plugin.make(value, checker.make_context()); })) return nullptr;
   arithmetic.check(fmt::format("{} '{}' of {}", kind_name<Interface>(), plugin.id, plugin.origin));
   if (checker.diagnostics().errors().size() != before) return nullptr;
-  if (object == nullptr) blame("cannot be made and does not say why");
-  if constexpr (std::is_same_v<Interface, Hinge>)
-    if (const std::string fault = object == nullptr ? "" : find_fault(*object); !fault.empty()) {
-      blame("made a motion that cannot be: " + fault);
-      return nullptr;
-    }
+  if (object == nullptr) {
+    blame("cannot be made and does not say why");
+    return nullptr;
+  }
+  std::string fault;
+  if (!reported("does not say what it is", [&] { fault = fault_of_made(*object); })) return nullptr;
+  if (!fault.empty()) {
+    blame(fault);
+    return nullptr;
+  }
   return object;
 }
 

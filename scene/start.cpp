@@ -37,11 +37,25 @@ void check_driven(const Model& model, const Scene& scene, const Checker& checker
   }
 }
 
+/// Has a load begin. \throws std::invalid_argument where it cannot, or changes more of the state than its numbers; the
+/// state is then as it was.
+void begin_load(const LoadNode& load, State& state) {
+  State begun = state;
+  plugin_call("load '" + load.name + "' does not begin", [&] { load.load->begin(begun); });
+  std::string why;
+  if (begun.y.size() != state.y.size())
+    why = fmt::format("leaves {} numbers in the state where there are {}", begun.y.size(), state.y.size());
+  else if (begun.time != state.time)
+    why = fmt::format("sets the time to {} s, which the scene says ('initial')", begun.time);
+  if (!why.empty()) throw std::invalid_argument(fmt::format("load '{}' does not begin: it {}", load.name, why));
+  state = std::move(begun);
+}
+
 /// Where loads have the simulation begin; reports those that leave no number there.
 void begin_loads(const Model& model, const Checker& checker, State& state) {
   for (const LoadNode& load : model.loads()) {
     try {
-      plugin_call("load '" + load.name + "' does not begin", [&] { load.load->begin(state); });
+      begin_load(load, state);
     } catch (const std::invalid_argument& e) {
       checker.key_error("/loads/" + load.name, e.what());
       continue;

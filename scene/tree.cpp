@@ -44,6 +44,7 @@ class TreeBuilder {
     if (!problems_.good) return std::move(tree_);
     try {
       tree_.model = std::make_unique<Model>(std::move(bodies_.nodes()), std::move(hinge_nodes_), gravity);
+      bodies_.check_mode_names(*tree_.model);
     } catch (const std::invalid_argument& e) {
       problems_.error(hinges, e.what());
     }

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "withy/core/model/columns.hpp"
 #include "withy/core/model/plugin_call.hpp"
 #include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/formulation.hpp"
@@ -130,12 +131,17 @@ bool TreeBodies::add_made(BodyNode& node, std::shared_ptr<const Body> body, cons
 }
 
 bool TreeBodies::check_measured(const Body& body, const std::string& plugin, const Value& value) {
+  const auto refuse = [&](const std::string& station, const char* what) {
+    problems_.key_error(value.place().path,
+                        fmt::format("body plugin '{}' measures {}at a station that the body does not have, {}; need {}",
+                                    plugin, what, in_quotes(station), body.stations()));
+    return false;
+  };
   const std::string station = body.measured_station();
-  if (station.empty() || body.station(station)) return true;
-  problems_.key_error(value.place().path,
-                      fmt::format("body plugin '{}' measures at a station that the body does not have, {}; need {}",
-                                  plugin, in_quotes(station), body.stations()));
-  return false;
+  if (!station.empty() && !body.station(station)) return refuse(station, "");
+  for (const std::string& beside : body.measured_beside())
+    if (!body.station(beside)) return refuse(beside, "beside ");
+  return true;
 }
 
 bool TreeBodies::check_shape(const Body& body, const std::string& plugin, const Value& value) {
@@ -156,10 +162,12 @@ void TreeBodies::add_segments(const std::string& plugin, const Value& value) {
     node.name = fmt::format("{}.{}", whole.name, k + 1);
     node.terms = whole.terms;
     node.segment = Segment{whole.name, k, segments.size(), whole.body};
-    if (segments[k] == nullptr || !check_shape(*segments[k], plugin, value)) {
-      problems_.good = false;
+    if (segments[k] == nullptr) {
+      problems_.key_error(value.place().path,
+                          fmt::format("body plugin '{}' made no segment {} of {}", plugin, k + 1, segments.size()));
       return;
     }
+    if (!check_shape(*segments[k], plugin, value)) return;
     node.body = segments[k];
     add_ends(node, value);
     if (node.body == nullptr) return;
@@ -314,6 +322,19 @@ void TreeBodies::add_named_stations(const Value& value) {
     return places_of(entry);
   });
   for (const std::string& place : places) tree_.names.places.add(entry.name + "." + place);
+}
+
+void TreeBodies::check_mode_names(const Model& model) {
+  for (const Entry& entry : entries_) {
+    for (int k = 1; k <= entry.count; ++k) {
+      const int body = model.body(entry.count == 1 ? entry.name : fmt::format("{}.{}", entry.name, k));
+      const std::string fault = body < 0 ? "" : mode_name_fault(model, static_cast<std::size_t>(body));
+      if (fault.empty()) continue;
+      problems_.key_error(entry.place.path,
+                          fmt::format("body plugin '{}' made a body that cannot be told of: {}", entry.plugin, fault));
+      break;
+    }
+  }
 }
 
 void TreeBodies::name_frames() {

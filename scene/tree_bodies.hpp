@@ -57,6 +57,8 @@ class TreeBodies {
   void add_named_stations(const Value& value);
   /// Notes the node of a body that its inboard hinge holds.
   void hold(int body, int node) { entries_[static_cast<std::size_t>(body)].held = node; }
+  /// Reports modes that are named as another column of tables is. \param model made of the nodes
+  void check_mode_names(const Model& model);
   /// Adds the names of all frames to those that other values may refer to.
   void name_frames();
 

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "withy/core/simulation/integrator_call.hpp"
+
 namespace withy::study {
 namespace {
 
@@ -31,7 +33,7 @@ CoarseRun::CoarseRun(const Prepared& prepared, std::size_t low, std::size_t high
                      const Integrator& integrator, const State& start, double end)
     : corrected_(prepared.rungs, low, high),
       reader_(outputs, prepared.model(), *prepared.rungs[high].equations),
-      loop_(prepared.model(), *prepared.rungs[high].equations, integrator.start(corrected_.faces(), start),
+      loop_(prepared.model(), *prepared.rungs[high].equations, start_stepper(integrator, corrected_.faces(), start),
             {.end = end, .output = end - start.time + 1}),
       read_at_(-std::numeric_limits<double>::infinity()) {
   corrected_.begin(start);

@@ -18,6 +18,7 @@
 #include "withy/core/simulation/renewal.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/scene/units.hpp"
+#include "withy/study/check_loads.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/trees_alone.hpp"
 
@@ -81,6 +82,7 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
   for (const LoadSlot& slot : layout().discrete_slots) require_no_switches(prepared.scene.file, model, slot);
   model.prescribe(state_);
   state_ = all_begun(model, *prepared_.equations, std::move(state_));
+  check_load_derivatives(prepared_, state_);
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];
     for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;

@@ -25,7 +25,8 @@ struct Holding {
 class Configuration {
  public:
   /// Sampled loads that have not begun hold what they give at the state.
-  /// \throws InputError where a load switches, or there is no such hinge.
+  /// \throws InputError where a load switches, or there is no such hinge; SceneError where a load is wrong about its
+  /// derivatives.
   Configuration(const Prepared& prepared, State state, const Holding& holding);
 
   [[nodiscard]] const Prepared& prepared() const { return prepared_; }

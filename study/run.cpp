@@ -12,8 +12,10 @@
 #include "withy/core/simulation/changing_equations.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/study/accuracy.hpp"
+#include "withy/study/check_loads.hpp"
 #include "withy/study/fast_course.hpp"
 #include "withy/study/growth.hpp"
 #include "withy/study/indicators.hpp"
@@ -251,16 +253,26 @@ std::string why_it_grew(const Prepared& prepared, const RunSummary& summary) {
   return growth_text(prepared, summary) + (sampled.empty() ? remedy_text(prepared, summary) : sampled);
 }
 
+[[noreturn]] void refuse_at_integrator(const Prepared& prepared, std::string why) {
+  const Place& place = prepared.scene.source.at("integrator").place();
+  throw SceneError(prepared.scene.file, {{{place.line, place.column, "/integrator"}, std::move(why)}},
+                   prepared.values.origins());
+}
+
 }  // namespace
 
 void check_integrator(const Prepared& prepared) {
   const Scene& scene = prepared.scene;
   try {
-    static_cast<void>(scene.integrator->start(*prepared.equations, scene.initial));
+    static_cast<void>(start_stepper(*scene.integrator, *prepared.equations, scene.initial,
+                                    "integrator '" + scene.integrator_name + "'"));
   } catch (const std::invalid_argument& e) {
-    const Place& place = scene.source.at("integrator").place();
-    throw SceneError(scene.file, {{{place.line, place.column, "/integrator"}, e.what()}}, prepared.values.origins());
+    refuse_at_integrator(prepared, e.what());
   }
+}
+
+void refuse_integrator(const Prepared& prepared, const std::string& deed) {
+  refuse_at_integrator(prepared, fmt::format("integrator '{}' {}", prepared.scene.integrator_name, deed));
 }
 
 void check_start(const Prepared& prepared) {
@@ -269,6 +281,7 @@ void check_start(const Prepared& prepared) {
     throw SceneError(scene.file, {{place, std::move(why)}}, prepared.values.origins());
   };
   check_integrator(prepared);
+  check_loads(prepared);
   const Value& integrator = scene.source.at("integrator");
   const Place chosen{integrator.place().line, integrator.place().column, "/integrator"};
   if (const auto rate = unsolvable_rate(prepared.model(), *prepared.equations, scene.initial)) {
@@ -286,7 +299,9 @@ void check_start(const Prepared& prepared) {
                                     brief(rtol->number()), why));
 }
 
-CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
+namespace {
+
+CertifiedRun run_certified(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
   CertifiedRun result;
   if (prepared.escalates()) {
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
@@ -333,6 +348,16 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
                                 more_modes(prepared, registry, result.summary, settings, comparable)},
                                registry);
   return result;
+}
+
+}  // namespace
+
+CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
+  try {
+    return run_certified(prepared, registry, settings);
+  } catch (const IntegratorError& e) {
+    refuse_integrator(prepared, e.deed());
+  }
 }
 
 std::string outcome_text(const RunSummary& summary) {

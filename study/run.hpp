@@ -42,15 +42,18 @@ struct CertifiedRun {
 
 /// Refuses an integrator that cannot treat these equations. \throws SceneError with its place
 void check_integrator(const Prepared& prepared);
+/// \throws SceneError with the integrator's place and plugin: it does `deed`, as IntegratorError says
+[[noreturn]] void refuse_integrator(const Prepared& prepared, const std::string& deed);
 
 /// Refuses what no run can begin with: a tolerance below what the mass matrix leaves to be had, a start at which that
-/// is singular, an integrator that cannot treat these equations. \throws SceneError with its place
+/// is singular, an integrator that cannot treat these equations, loads that are wrong about themselves (check_loads).
+/// \throws SceneError with its place
 void check_start(const Prepared& prepared);
 
 /// Simulates from the scene's initial state to its end, measures what is left out on the way, and estimates its effect
 /// afterwards. Of `auto` the error is estimated and its formulations are chosen before; a run that comes to the end and
 /// does not hold the accuracy asked, or cannot know it, is inaccurate.
-/// \throws SceneError where the scene has no end.
+/// \throws SceneError where the scene has no end, or the integrator fails on the way.
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings = {});
 
 /// "completed", "completed by an event at 0.56 s", or "diverged at 0.0523 s".

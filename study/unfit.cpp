@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/compiled_model.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 
 namespace withy::study {
 
@@ -39,7 +40,7 @@ std::vector<Unfit> take_out_unfit(const std::shared_ptr<const Model>& model, Reg
 std::vector<std::string> usual_formulations(const Scene& scene, Registry& registry, std::vector<Unfit>& left_out) {
   std::vector<std::string> usual = {"ruthless", "inconsistent", "consistent", "quadratic"};
   left_out = take_out(scene.model, registry, usual, [&](const Equations& equations) {
-    static_cast<void>(scene.integrator->start(*equations, scene.initial));
+    static_cast<void>(start_stepper(*scene.integrator, *equations, scene.initial));
   });
   return usual;
 }

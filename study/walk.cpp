@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/loop_following.hpp"
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/stepping.hpp"
@@ -147,7 +148,7 @@ Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserve
   const State start = begun(model.model(), equations, model.scene.initial);
   EventActions actions(model.model(), equations, {});
   const double interval = observer.interval > 0 ? observer.interval : model.scene.output;
-  Stepping loop(model.model(), equations, integrator.start(equations, start),
+  Stepping loop(model.model(), equations, start_stepper(integrator, equations, start),
                 {.end = end_of_run(model.scene), .output = interval, .events = actions.watched(), .actions = &actions});
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();

@@ -7,6 +7,7 @@
 
 #include "withy/bindings/fmi/resources.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 
 namespace withy::fmi {
@@ -229,7 +230,7 @@ void Instance::exit_initialization() {
       if (is_input_set_[i] != 0 && d.is_reached(load)) session_->set_input(load, inputs_[i]);
     }
     d.show(session_->state());
-    for (const std::string& remark : session_->stepper().remarks())
+    for (const std::string& remark : remarks_of(session_->stepper()))
       say(Status::ok, log_all, "The integrator: " + remark + ".");
   }
   mode_ = kind_ == Kind::co_simulation ? Mode::step : Mode::event;

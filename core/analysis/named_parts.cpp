@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "withy/core/tangents/load_derivatives.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
 #include "withy/core/tangents/refined_difference.hpp"
 
@@ -51,7 +52,8 @@ bool add_of_states(const LoadNode& node, const Model& model, const State& state,
   Eigen::MatrixXd by_state(n, z), rate_by_position(z, n), rate_by_speed(z, n), rate_by_state(z, z);
   ContinuousDerivatives to{part.by_position, part.by_speed, by_state, rate_by_position, rate_by_speed, rate_by_state};
   std::vector<double> scratch(model.load_scratch());
-  return node.continuous->add_derivatives(node.view(state.time, state.y, layout, scratch), to);
+  return derivatives_call(
+      node.name, [&] { return node.continuous->add_derivatives(node.view(state.time, state.y, layout, scratch), to); });
 }
 
 }  // namespace
@@ -85,9 +87,10 @@ std::vector<NamedPart> named_parts(const TangentDynamics& dynamics, const State&
     at_frames = at_frames || !node.load->frames().empty();
     NamedPart part{"load '" + node.name + "'", none, none, true};
     const auto& differenced = tangents.differenced;
-    const bool by_itself =
-        node.load->add_derivatives(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
-                                   part.by_position, part.by_speed);
+    const bool by_itself = derivatives_call(node.name, [&] {
+      return node.load->add_derivatives(state.time, y.first(layout.positions),
+                                        y.subspan(layout.positions, layout.speeds), part.by_position, part.by_speed);
+    });
     const bool by_states = add_of_states(node, model, state, part);
     if (node.load->frames().empty() &&
         std::find(differenced.begin(), differenced.end(), node.name) != differenced.end()) {

@@ -16,9 +16,13 @@ std::string sections_fault(const BoundSensor& sensor, const Model& model) {
     const auto body = static_cast<std::size_t>(place.body);
     if (place.body < 0 || body >= model.bodies().size()) {
       text << "it asks for a section of body " << place.body << ", and there are " << model.bodies().size();
-    } else if (!model.bodies()[body].body->cut(place.x)) {
-      text << "it asks for the section at x = " << place.x << " m of body '" << model.bodies()[body].name
-           << "', which cannot be cut there";
+    } else {
+      const BodyNode& node = model.bodies()[body];
+      const std::optional<BodyCut> cut = node.body->cut(place.x);
+      const std::string fault = cut ? find_fault(*cut, node.body->shape().modes()) : "";
+      if (!cut || !fault.empty())
+        text << "it asks for the section at x = " << place.x << " m of body '" << node.name << "', which "
+             << (cut ? "cannot be: " + fault : std::string("cannot be cut there"));
     }
     if (!text.str().empty()) return text.str();
   }

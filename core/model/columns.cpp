@@ -1,5 +1,7 @@
 #include "withy/core/model/columns.hpp"
 
+#include <algorithm>
+#include <array>
 #include <initializer_list>
 
 #include "withy/core/model/hinge_rates.hpp"
@@ -19,7 +21,48 @@ std::string numbered(const std::string& name, std::size_t index, std::size_t cou
   return count == 1 ? name : name + '.' + std::to_string(index);
 }
 
+/// Behind the name of a body: what tables tell of its tip.
+constexpr std::array<const char*, 6> tip_columns = {
+    "tip.x", "tip.y", "tip.z", "tip.deflection_x", "tip.deflection_y", "tip.deflection_z"};
+
+/// All that tables tell of a hinge, of its motion too if it has one.
+std::vector<std::string> column_names_of(const HingeNode& hinge) {
+  std::vector<std::string> names;
+  for (const Column& c : coordinate_columns(hinge)) names.push_back(c.name);
+  for (const Column& c : rate_columns(hinge)) names.push_back(c.name);
+  for (std::size_t i = 0; i < hinge.hinge->speeds(); ++i)
+    names.push_back(numbered(hinge.name + ".motion_effort", i, hinge.hinge->speeds()));
+  return names;
+}
+
 }  // namespace
+
+std::string spelled_in_tables(const std::string& name) {
+  std::string text = name;
+  std::erase(text, ']');
+  std::replace(text.begin(), text.end(), '[', '.');
+  return text;
+}
+
+std::string mode_name_fault(const Model& model, std::size_t body) {
+  const BodyNode& node = model.bodies()[body];
+  const bool has_tip = !node.segment && node.frame("tip") >= 0;  // a whole in segments has another name
+  const int hinge = model.hinge(node.name);
+  std::vector<std::string> of_hinge;
+  if (hinge >= 0) of_hinge = column_names_of(model.hinges()[static_cast<std::size_t>(hinge)]);
+  for (const std::string& mode : node.body->shape().mode_names) {
+    const std::string spelled = spelled_in_tables(mode);
+    for (const std::string& name : {spelled, spelled + ".rate"}) {
+      if (has_tip && std::find(tip_columns.begin(), tip_columns.end(), name) != tip_columns.end())
+        return "a mode is named '" + mode + "', and tables of results have the column '" + node.name + '.' + name +
+               "' of the body's tip";
+      if (std::find(of_hinge.begin(), of_hinge.end(), node.name + '.' + name) != of_hinge.end())
+        return "a mode is named '" + mode + "', and tables of results have the column '" + node.name + '.' + name +
+               "' of the hinge '" + node.name + "'";
+    }
+  }
+  return {};
+}
 
 std::vector<Column> coordinate_columns(const HingeNode& hinge) {
   const auto kernel = hinge.hinge->kernel();

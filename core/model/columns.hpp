@@ -22,6 +22,15 @@ std::vector<Column> coordinate_columns(const HingeNode& hinge);
 /// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0` [rad/s] ….
 std::vector<Column> rate_columns(const HingeNode& hinge);
 
+/// As tables spell a name: "mode[1]" is "mode.1".
+std::string spelled_in_tables(const std::string& name);
+
+/// What is wrong with the names of a body's modes beside the other columns of tables, or empty: a mode with the name of
+/// a coordinate of the tip, as "tip.x", or of a number of a hinge that is named as the body is. Two columns of one name
+/// can be written to no file of results.
+/// \param body index in the model
+std::string mode_name_fault(const Model& model, std::size_t body);
+
 /// What a sensor gives, as `tip.x` [m]; `drive` [N m] where a number has no name of its own.
 std::vector<Column> columns_of(const SensorNode& sensor);
 

@@ -24,6 +24,7 @@ std::vector<HingeRate> hinge_rates(const Hinge& hinge) {
   for (std::size_t i = 0; i < displaced.size(); ++i) displaced[i] += 0.3 + 0.07 * static_cast<double>(i);
   hinge.normalize(displaced);
 
+  const bool known = hinge.kernel().has_value();
   std::vector<HingeRate> result(hinge.speeds());
   std::vector<double> rates(hinge.speeds()), x_dot(hinge.coordinates());
   HingeMotion motion;
@@ -31,7 +32,8 @@ std::vector<HingeRate> hinge_rates(const Hinge& hinge) {
   for (std::size_t r = 0; r < rates.size(); ++r) {
     rates[r] = 1;
     hinge.motion(displaced, rates, motion);
-    result[r].angular = !motion.H.col(static_cast<Eigen::Index>(r)).head<3>().isZero(0);
+    const bool turns = !motion.H.col(static_cast<Eigen::Index>(r)).head<3>().isZero(0);
+    result[r].angular = known ? turns : hinge.angular(r).value_or(turns);
     hinge.derivatives(displaced, rates, x_dot);
     result[r].coordinate = unit_index(x_dot);
     hinge.derivatives(reference, rates, x_dot);

@@ -1,5 +1,6 @@
 /// \file
-/// What the rates of a hinge measure, found from its motion: for units and for loads on single coordinates.
+/// What the rates of a hinge measure, as it says or found from its motion: for units and for loads on single
+/// coordinates.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 namespace withy {
 
 struct HingeRate {
-  bool angular = false;                   ///< it turns the child [rad/s]; else it only moves it [m/s]
+  bool angular = false;                   ///< that of an angle [rad/s]; else of a length [m/s] (Hinge::angular)
   std::optional<std::size_t> coordinate;  ///< the coordinate whose derivative it is; none where x holds a quaternion
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -251,11 +252,20 @@ bool Model::is_exact(std::size_t body, const Terms& scene) const {
 }
 
 void Model::require_rods(const Terms& scene) const {
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    if (is_exact(b, scene) && bodies_[b].body->rod() == nullptr)
-      throw std::invalid_argument("body '" + bodies_[b].name +
+  std::set<const Body*> sound;  // equal bodies are one
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (!is_exact(b, scene)) continue;
+    const BodyNode& node = bodies_[b];
+    const Rod* const rod = node.body->rod();
+    if (rod == nullptr)
+      throw std::invalid_argument("body '" + node.name +
                                   "' has no exact kinematics: a beam offers it whose modes are clamped at its root; "
                                   "give it a formulation of its own");
+    if (!sound.insert(node.body.get()).second) continue;
+    if (const std::string fault = find_fault(*rod, node.body->shape()); !fault.empty())
+      throw std::invalid_argument("the rod that body '" + node.name +
+                                  "' offers for exact kinematics cannot be used: " + fault);
+  }
 }
 
 std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> model, const Terms& scene) {

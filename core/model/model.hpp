@@ -145,7 +145,7 @@ class Model {
   /// Whether the modes of a body are those of exact kinematics, which is that of equations without truncation; `scene`:
   /// of the bodies that have no terms of their own.
   [[nodiscard]] bool is_exact(std::size_t body, const Terms& scene) const;
-  /// \throws std::invalid_argument where a body is to be exact that offers no rod.
+  /// \throws std::invalid_argument where a body is to be exact that offers no rod, or one with a fault (validate.hpp).
   void require_rods(const Terms& scene) const;
   /// The same tree with the bodies in the strain kinematics that their terms name, `scene` where they have none.
   /// \throws std::invalid_argument where a body cannot be; the text names it and the kinematics. As require_rods.
@@ -153,7 +153,7 @@ class Model {
                                                                   const Terms& scene);
 
   /// Adds a load, bound to this model. For builders of a model, before it is shared and before it has states.
-  /// \throws std::invalid_argument as Load::bind.
+  /// \throws std::invalid_argument as Load::bind; where its clock has no finite period, or its counts are beyond 2³².
   void add_load(std::string name, const Load& load);
   /// Sensors that loads may measure, by their names; those without a sensor exist and cannot be measured.
   [[nodiscard]] const std::vector<SensorNode>* measured() const { return measured_.get(); }

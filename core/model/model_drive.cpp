@@ -1,11 +1,13 @@
 // What moves a model from outside its tree: motions that prescribe hinges, and loads with their states.
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/model/plugin_call.hpp"
+#include "withy/core/plugin/kinks.hpp"
 
 namespace withy {
 
@@ -29,12 +31,32 @@ struct Kept {
   std::size_t discrete = 0;        ///< count of states
 };
 
-Kept kept_by(const BoundLoad& load, const std::string& name) {
-  Kept kept{load.scratch(), load.continuous(), {}, 0};
+/// A count that a load says. One of a number that was never set is told here, before memory for it is asked for.
+std::size_t counted(std::size_t count, const std::string& who, const char* what) {
+  constexpr std::size_t most = std::size_t{1} << 32U;
+  if (count <= most) return count;
+  throw std::invalid_argument(who + " says that it has " + std::to_string(count) + " " + what + "; " +
+                              std::to_string(most) + " are the most");
+}
+
+/// The count of discrete states, of a part whose clock can be kept.
+std::size_t discrete_states(const DiscretePart& part, const std::string& who) {
+  static_cast<void>(counted(part.switches(), who, "switching functions"));
+  const double period = part.period();
+  if (period >= 0 && std::isfinite(period)) return counted(part.states(), who, "discrete states");
+  std::ostringstream text;
+  text << who << " is renewed every " << period << " s; need a finite period, or 0 where no clock renews it";
+  throw std::invalid_argument(text.str());
+}
+
+Kept kept_by(const BoundLoad& load, const std::string& name, const std::string& who) {
+  Kept kept{counted(load.scratch(), who, "numbers of scratch space"), load.continuous(), {}, 0};
   if (kept.continuous != nullptr)
-    for (std::size_t i = 0, count = kept.continuous->states(); i < count; ++i)
+    for (std::size_t i = 0, count = counted(kept.continuous->states(), who, "continuous states"); i < count; ++i)
       kept.names.push_back(name + "." + kept.continuous->name(i));
-  if (const DiscretePart* part = load.discrete(); part != nullptr) kept.discrete = part->states();
+  if (const DiscretePart* part = load.discrete(); part != nullptr) kept.discrete = discrete_states(*part, who);
+  if (const auto* kinked = dynamic_cast<const Kinks*>(&load); kinked != nullptr)
+    static_cast<void>(counted(kinked->kinks(), who, "kinks"));
   return kept;
 }
 
@@ -131,7 +153,7 @@ void Model::add_load(std::string name, const Load& load) {
   if (bound == nullptr) throw std::invalid_argument(who + " cannot be bound and does not say why");
   check_times(who, *bound);
   LoadNode node{std::move(name), bound};
-  const Kept kept = plugin_call(who + " does not say what it keeps", [&] { return kept_by(*bound, node.name); });
+  const Kept kept = plugin_call(who + " does not say what it keeps", [&] { return kept_by(*bound, node.name, who); });
   load_scratch_ = std::max(load_scratch_, kept.scratch);
   const std::size_t index = loads_.size();
   if (kept.continuous != nullptr) {

@@ -1,57 +1,16 @@
 #include "withy/core/model/validate.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
+#include <string_view>
+
+#include "withy/core/model/columns.hpp"
+#include "withy/core/model/matrix_faults.hpp"
 
 namespace withy {
 namespace {
-
-constexpr double tolerance = 1e-10;
-
-using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
-
-std::string size_fault(const std::string& name, const ConstMatrix& m, Eigen::Index rows, Eigen::Index columns) {
-  if (m.rows() == rows && m.cols() == columns) return {};
-  std::ostringstream text;
-  text << name << " is " << m.rows() << " by " << m.cols() << ", not " << rows << " by " << columns;
-  return text.str();
-}
-
-std::string finite_fault(const std::string& name, const ConstMatrix& m) {
-  for (Eigen::Index i = 0; i < m.rows(); ++i) {
-    for (Eigen::Index j = 0; j < m.cols(); ++j) {
-      if (std::isfinite(m(i, j))) continue;
-      std::ostringstream text;
-      text << name << " has " << m(i, j) << " in row " << i + 1 << ", column " << j + 1;
-      return text.str();
-    }
-  }
-  return {};
-}
-
-std::string symmetry_fault(const std::string& name, const ConstMatrix& m) {
-  if (m.size() == 0) return {};
-  if ((m - m.transpose()).cwiseAbs().maxCoeff() <= tolerance * m.cwiseAbs().maxCoeff()) return {};
-  return name + " is not symmetric";
-}
-
-std::string square_fault(const std::string& name, const ConstMatrix& m, Eigen::Index size) {
-  if (std::string fault = size_fault(name, m, size, size); !fault.empty()) return fault;
-  if (std::string fault = finite_fault(name, m); !fault.empty()) return fault;
-  return symmetry_fault(name, m);
-}
-
-/// Of a symmetric matrix: it is semidefinite where the smallest shift makes it definite.
-std::string sign_fault(const std::string& name, const ConstMatrix& m) {
-  const double greatest = m.size() == 0 ? 0 : m.cwiseAbs().maxCoeff();
-  if (greatest == 0) return {};
-  const auto shift = tolerance * greatest * Eigen::MatrixXd::Identity(m.rows(), m.cols());
-  if (Eigen::LLT<Eigen::MatrixXd>(m + shift).info() == Eigen::Success) return {};
-  return name + " is not positive semidefinite";
-}
 
 std::string field_fault(const std::string& name, const ConstMatrix& m, Eigen::Index modes) {
   if (std::string fault = size_fault(name, m, 3, modes); !fault.empty()) return fault;
@@ -65,25 +24,54 @@ bool breaks_heads(const std::string& text, const char* signs) {
          });
 }
 
+/// The byte that a sequence of UTF-8 begins with: how many bytes follow it, from which number on such a sequence is not
+/// longer than it needs to be, and what of the number it holds. Nothing follows what begins none.
+struct LeadByte {
+  std::size_t following = 0;
+  char32_t least = 0, number = 0;
+};
+
+LeadByte lead_byte(unsigned char c) {
+  if (c >= 0xF0 && c < 0xF5) return {3, 0x10000, char32_t(c & 0x07)};
+  if (c >= 0xE0 && c < 0xF0) return {2, 0x800, char32_t(c & 0x0F)};
+  if (c >= 0xC2 && c < 0xE0) return {1, 0x80, char32_t(c & 0x1F)};
+  return {};
+}
+
+/// As the files of results are.
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+    if (byte(i) < 0x80) {
+      ++i;
+      continue;
+    }
+    const LeadByte lead = lead_byte(byte(i));
+    if (lead.following == 0 || i + lead.following >= text.size()) return false;
+    char32_t number = lead.number;
+    for (std::size_t k = 1; k <= lead.following; ++k) {
+      if ((byte(i + k) & 0xC0) != 0x80) return false;
+      number = number << 6 | char32_t(byte(i + k) & 0x3F);
+    }
+    const bool surrogate = number >= 0xD800 && number < 0xE000;
+    if (number < lead.least || number > 0x10FFFF || surrogate) return false;
+    i += lead.following + 1;
+  }
+  return true;
+}
+
 /// Of a name, which is that of an object in HDF5 too.
 bool is_no_column(const std::string& name) { return breaks_heads(name, ",\"/"); }
 
 constexpr const char* column_rule = " has a name with a comma, a quotation mark, a slash or a control character";
 
-/// As tables spell a name: "mode[1]" is "mode.1".
-std::string spelled(const std::string& name) {
-  std::string text = name;
-  std::erase(text, ']');
-  std::replace(text.begin(), text.end(), '[', '.');
-  return text;
-}
-
 std::string names_fault(const std::vector<std::string>& names) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty()) return "a mode has no name";
+    if (!is_utf8(names[i])) return "mode " + std::to_string(i + 1) + " has a name that is not UTF-8";
     if (is_no_column(names[i])) return "mode " + std::to_string(i + 1) + column_rule;
-    if (!seen.insert(spelled(names[i])).second) return "two modes are named '" + names[i] + "'";
+    if (!seen.insert(spelled_in_tables(names[i])).second) return "two modes are named '" + names[i] + "'";
   }
   for (const std::string& name : seen)
     if (seen.contains(name + ".rate")) return "a mode is named '" + name + ".rate', as the rate of another";
@@ -132,6 +120,19 @@ std::string section_fault(const Section& section, Eigen::Index modes) {
   return find_fault(section.at, modes);
 }
 
+std::string mass_fault(const std::vector<Particle>& particles, const std::vector<Section>& sections,
+                       Eigen::Index modes) {
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (const std::string fault = particle_fault(particles[i], modes); !fault.empty())
+      return "particle " + std::to_string(i + 1) + ": " + fault;
+  }
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    if (const std::string fault = section_fault(sections[i], modes); !fault.empty())
+      return "section " + std::to_string(i + 1) + ": " + fault;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string find_fault(const PointExpansion& point, Eigen::Index modes) {
@@ -158,17 +159,14 @@ std::string find_fault(const ModalShape& shape) {
   if (std::string fault = square_fault("the stiffness matrix", shape.stiffness, n); !fault.empty()) return fault;
   if (std::string fault = square_fault("the damping matrix", shape.damping, n); !fault.empty()) return fault;
   if (std::string fault = sign_fault("the damping matrix", shape.damping); !fault.empty()) return fault;
-  for (std::size_t i = 0; i < shape.particles.size(); ++i) {
-    if (const std::string fault = particle_fault(shape.particles[i], n); !fault.empty()) {
-      return "particle " + std::to_string(i + 1) + ": " + fault;
-    }
-  }
-  for (std::size_t i = 0; i < shape.sections.size(); ++i) {
-    if (const std::string fault = section_fault(shape.sections[i], n); !fault.empty()) {
-      return "section " + std::to_string(i + 1) + ": " + fault;
-    }
-  }
-  return {};
+  return mass_fault(shape.particles, shape.sections, n);
+}
+
+std::string find_fault(const BodyCut& cut, Eigen::Index modes) {
+  if (std::string fault = find_fault(cut.at, modes); !fault.empty()) return fault;
+  if (std::string fault = field_fault("its curvature", cut.curvature, modes); !fault.empty()) return fault;
+  if (std::string fault = square_fault("its stiffness", cut.stiffness, 3); !fault.empty()) return fault;
+  return mass_fault(cut.particles, cut.sections, modes);
 }
 
 std::string find_fault(const std::vector<SensorColumn>& columns) {
@@ -177,10 +175,12 @@ std::string find_fault(const std::vector<SensorColumn>& columns) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const SensorColumn& c = columns[i];
     const std::string which = "number " + std::to_string(i + 1);
+    if (!is_utf8(c.component)) return which + " has a name that is not UTF-8";
+    if (!is_utf8(c.unit)) return which + " has a unit that is not UTF-8";
     if (is_no_column(c.component)) return which + column_rule;
     if (breaks_heads(c.unit, ",\"[]"))
       return which + " has a unit with a comma, a quotation mark, a bracket or a control character";
-    if (!seen.insert(spelled(c.component)).second)
+    if (!seen.insert(spelled_in_tables(c.component)).second)
       return c.component.empty() ? "two have no name" : "two are named '" + c.component + "'";
   }
   return {};

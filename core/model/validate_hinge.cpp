@@ -1,4 +1,4 @@
-// Whether a hinge moves as it says: its kernel, H and bias against differences of its poses.
+// Whether a hinge moves as it says: its kernel, H, bias and their derivatives against differences of its poses.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,8 +40,29 @@ HingeMotion motion_at(const Hinge& hinge, const Numbers& x, const Numbers& rates
   return m;
 }
 
-bool is_finite(const HingeMotion& m) {
-  return m.pose.R.allFinite() && m.pose.p.allFinite() && m.H.allFinite() && m.bias.allFinite();
+/// What of a motion is not finite; null: all is.
+const char* unbounded_part(const HingeMotion& m) {
+  if (!m.pose.R.allFinite() || !m.pose.p.allFinite()) return "pose";
+  if (!m.H.allFinite()) return "H";
+  return m.bias.allFinite() ? nullptr : "bias";
+}
+
+/// Of H, which a hinge finds with one column a rate and has to leave so.
+std::string width_fault(const std::string& what, const HingeMotion& m, std::size_t speeds) {
+  if (m.H.cols() == static_cast<Eigen::Index>(speeds)) return {};
+  std::ostringstream text;
+  text << what << " has " << m.H.cols() << " columns; need one a rate, " << speeds;
+  return text.str();
+}
+
+/// Of a finite pose. What is computed takes the transpose of R for its inverse.
+std::string rotation_fault(const Pose& pose) {
+  std::ostringstream text;
+  if (const double off = (pose.R.transpose() * pose.R - Matrix3::Identity()).norm(); !(off <= motion_rounding))
+    text << "R of its pose is no rotation: R^T R is off the identity by " << off;
+  else if (pose.R.determinant() < 0)
+    text << "R of its pose is a reflection, of determinant -1";
+  return text.str();
 }
 
 /// Angular and linear parts have other units.
@@ -84,9 +105,44 @@ std::string compared(const std::string& what, const Vector6& said, Find&& find) 
   return found == said ? std::string() : difference(what, said, found);
 }
 
+/// Of the derivatives that a hinge gives along one rate, at a place where its motion is finite. Those of Hinge itself
+/// are not compared: what is not smooth over their steps is no fault of the hinge.
+std::string derivative_fault_along(const Hinge& hinge, const Numbers& x, const Numbers& rates, std::size_t along) {
+  const auto speeds = static_cast<Eigen::Index>(rates.size());
+  HingeMotion said, by_default;
+  said.H.resize(6, speeds), by_default.H.resize(6, speeds);
+  hinge.motion_derivative(x, rates, along, said);
+  const std::string name = "the derivative of H along rate " + std::to_string(along + 1);
+  if (std::string fault = width_fault(name, said, rates.size()); !fault.empty()) return fault;
+  hinge.Hinge::motion_derivative(x, rates, along, by_default);
+  if (said.H == by_default.H && said.bias == by_default.bias) return {};
+  Numbers unit(rates.size(), 0.0);
+  unit[along] = 1;
+  const auto differences = [&](double step) {
+    HingeMotion ahead = motion_at(hinge, displaced(hinge, x, unit, step), rates);
+    const HingeMotion behind = motion_at(hinge, displaced(hinge, x, unit, -step), rates);
+    ahead.H = (ahead.H - behind.H) / (2 * step);
+    ahead.bias = (ahead.bias - behind.bias) / (2 * step);
+    return ahead;
+  };
+  for (Eigen::Index i = 0; i < speeds; ++i) {
+    const std::string fault = compared(name + ", column " + std::to_string(i + 1) + ",", said.H.col(i),
+                                       [&](double step) -> Vector6 { return differences(step).H.col(i); });
+    if (!fault.empty()) return fault;
+  }
+  return compared("the derivative of the bias along rate " + std::to_string(along + 1), said.bias,
+                  [&](double step) { return differences(step).bias; });
+}
+
+std::string derivative_fault(const Hinge& hinge, const Numbers& x, const Numbers& rates) {
+  for (std::size_t along = 0; along < rates.size(); ++along)
+    if (std::string fault = derivative_fault_along(hinge, x, rates, along); !fault.empty()) return fault;
+  return {};
+}
+
+/// Of a place where the motion is finite.
 std::string rates_fault(const Hinge& hinge, const Numbers& x, const Numbers& rates) {
   const HingeMotion here = motion_at(hinge, x, rates);
-  if (!is_finite(here)) return {};  // of a hinge that cannot be there
   for (std::size_t i = 0; i < rates.size(); ++i) {
     Numbers unit(rates.size(), 0.0);
     unit[i] = 1;
@@ -174,6 +230,26 @@ std::string derivatives_fault(const Hinge& hinge, const Numbers& x, const Number
   return {};
 }
 
+std::string reference_fault(const Numbers& reference) {
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    if (std::isfinite(reference[i])) continue;
+    std::ostringstream text;
+    text << "coordinate " << i + 1 << " of its reference is " << reference[i];
+    return text.str();
+  }
+  return {};
+}
+
+/// At a place where the motion is finite.
+std::string place_fault(const Hinge& hinge, const std::optional<HingeKernel>& kernel, const Numbers& x,
+                        const Numbers& rates) {
+  if (std::string fault = rotation_fault(motion_at(hinge, x, rates).pose); !fault.empty()) return fault;
+  if (kernel)
+    if (std::string fault = kernel_fault(hinge, *kernel, x, rates); !fault.empty()) return fault;
+  if (std::string fault = rates_fault(hinge, x, rates); !fault.empty()) return fault;
+  return derivative_fault(hinge, x, rates);
+}
+
 }  // namespace
 
 std::string find_fault(const Hinge& hinge) {
@@ -190,16 +266,24 @@ std::string find_fault(const Hinge& hinge) {
     if (std::string fault = kernel_size_fault(hinge, *kernel); !fault.empty()) return fault;
   Numbers reference(coordinates);
   hinge.reference(reference);
+  if (std::string fault = reference_fault(reference); !fault.empty()) return fault;
   const Numbers rates = test_rates(speeds);
   // Beside the reference, where columns may vanish that do not elsewhere.
+  const char* unbounded = nullptr;
+  bool met = false;
   for (const double distance : {0.01, 0.1}) {
     const Numbers x = displaced(hinge, reference, rates, distance);
-    if (kernel)
-      if (std::string fault = kernel_fault(hinge, *kernel, x, rates); !fault.empty()) return fault;
     if (std::string fault = derivatives_fault(hinge, x, rates); !fault.empty()) return fault;
-    if (std::string fault = rates_fault(hinge, x, rates); !fault.empty()) return fault;
+    const HingeMotion here = motion_at(hinge, x, rates);
+    if (std::string fault = width_fault("H", here, speeds); !fault.empty()) return fault;
+    if (const char* part = unbounded_part(here); part != nullptr) {
+      unbounded = part;  // it may be that it cannot be there
+      continue;
+    }
+    met = true;
+    if (std::string fault = place_fault(hinge, kernel, x, rates); !fault.empty()) return fault;
   }
-  return {};
+  return met ? std::string() : std::string("its ") + unbounded + " is not finite near its reference";
 }
 
 }  // namespace withy

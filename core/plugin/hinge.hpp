@@ -44,6 +44,7 @@ class Hinge {
   [[nodiscard]] virtual std::size_t speeds() const = 0;
   /// The coordinates of the reference pose, X_FM as undisplaced as can be.
   virtual void reference(std::span<double> x) const noexcept = 0;
+  /// R of the pose is a rotation: orthogonal, of determinant 1. H in `out` has a column a rate and keeps them.
   virtual void motion(std::span<const double> x, std::span<const double> rates, HingeMotion& out) const noexcept = 0;
   /// The derivatives of H and of the bias, at x and rates, with respect to a displacement along rate `along`: x changes
   /// as if that rate alone were one. In `out` the pose has no meaning; its derivative is R ω̂, R v with (ω, v) = H
@@ -58,6 +59,10 @@ class Hinge {
   virtual void normalize(std::span<double> x) const noexcept = 0;
   /// The known motion this hinge is, if it is one.
   [[nodiscard]] virtual std::optional<HingeKernel> kernel() const = 0;
+  /// Whether a rate is that of an angle: then it is told in rad/s, its coordinate in rad and its effort in N m, and
+  /// else in m/s, m and N. Nothing: by the motion, an angle where the rate turns the child. For hinges that slide by an
+  /// angle or turn by a length; of one that has a kernel nobody asks.
+  [[nodiscard]] virtual std::optional<bool> angular(std::size_t /*rate*/) const { return {}; }
 };
 
 }  // namespace withy

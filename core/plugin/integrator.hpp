@@ -22,7 +22,7 @@ struct StepResult {
     step_underflow  ///< the accuracy asked for needs steps below the resolution of time
   };
   Outcome outcome = Outcome::ok;
-  int body = -1;  ///< the body an evaluation blamed, or −1
+  int body = -1;  ///< the body an evaluation blamed, by its index in Model::bodies(), or −1
 };
 
 /// What an integration has cost so far.
@@ -39,8 +39,8 @@ struct StepStatistics {
 class Stepper {
  public:
   virtual ~Stepper() = default;
-  /// Advances by one accepted step, not past t_limit [s] and landing on it exactly where it is reached. After a result
-  /// other than ok the state is the last accepted one.
+  /// Advances by one accepted step, not past t_limit [s] and landing on it exactly where it is reached. The state keeps
+  /// its count of numbers. After a result other than ok it is the last accepted one.
   virtual StepResult step(double t_limit) = 0;
   [[nodiscard]] virtual const State& state() const = 0;
   /// State inside the last accepted step, t between its ends, to the accuracy the integrator states. Discrete states
@@ -69,13 +69,14 @@ class Stepper {
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  /// Begins at `state`; `equations` must outlive the stepper.
+  /// Begins at `state`; `equations` must outlive the stepper. Never null.
+  /// \throws std::invalid_argument where it cannot treat these equations; the text says why.
   [[nodiscard]] virtual std::unique_ptr<Stepper> start(const EquationsOfMotion& equations,
                                                        const State& state) const = 0;
   /// Order of accuracy of a step.
   [[nodiscard]] virtual int order() const = 0;
-  /// Greatest h ω up to which an undamped vibration of frequency ω grows by no more than 1 % a step. Infinite where no
-  /// step is too long; nothing where it is not known.
+  /// Greatest h ω, positive, up to which an undamped vibration of frequency ω grows by no more than 1 % a step.
+  /// Infinite where no step is too long; nothing where it is not known.
   [[nodiscard]] virtual std::optional<double> stability_limit() const { return {}; }
 };
 

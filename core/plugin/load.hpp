@@ -53,11 +53,11 @@ class DiscretePart {
   virtual ~DiscretePart() = default;
   /// Count of discrete states.
   [[nodiscard]] virtual std::size_t states() const = 0;
-  /// [s]: `renew` is called at all multiples of it; 0: not by the clock.
+  /// [s]: `renew` is called at all multiples of it; 0: not by the clock. Finite, not negative, always the same.
   [[nodiscard]] virtual double period() const { return 0; }
   /// Count of switching functions: `renew` is called where one of them passes through zero.
   [[nodiscard]] virtual std::size_t switches() const { return 0; }
-  /// Sets the values of the switching functions, continuous between two instants.
+  /// Sets the values of the switching functions, finite, continuous between two instants.
   virtual void switching(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
                          std::span<const double> /*discrete*/, std::span<double> /*values*/) const noexcept {}
   /// Sets the discrete states anew from those before and the state at t: at the start of a run and at each instant.
@@ -198,7 +198,8 @@ class BoundLoad {
   [[nodiscard]] virtual const InputPort* input() const { return nullptr; }
   /// Time [s] at which the load has done its work (a slew's end); 0 where it has no end of its own.
   [[nodiscard]] virtual double end() const = 0;
-  /// Sets the hinge coordinates where the load wants the motion to begin (a slew starts at its `from`).
+  /// Sets the hinge coordinates where the load wants the motion to begin (a slew starts at its `from`); neither the
+  /// time nor how many numbers there are.
   virtual void begin(State& state) const = 0;
   /// The load for the same tree compiled in these terms, its bodies in their strain kinematics, where it asks the model
   /// for more than indices; null where it is that one itself.

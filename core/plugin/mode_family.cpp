@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "withy/core/plugin/default_values.hpp"
 #include "withy/core/plugin/registry.hpp"
 
 namespace withy {
@@ -9,12 +10,7 @@ namespace {
 
 /// The family's options; a name alone leaves all at their defaults.
 Value options(const Value& family, const std::vector<ParameterSpec>& specs) {
-  if (family.kind() == Value::Kind::map) return family;
-  Value map = Value::map({}, family.place());
-  for (const ParameterSpec& spec : specs) {
-    if (spec.fallback) map.set(spec.key, *spec.fallback);
-  }
-  return map;
+  return family.kind() == Value::Kind::map ? family : default_values(specs, family.place());
 }
 
 const Value& name_of(const Value& family) { return family.kind() == Value::Kind::map ? family.at("name") : family; }

@@ -40,7 +40,7 @@ class ShapeFunctions {
  public:
   virtual ~ShapeFunctions() = default;
   [[nodiscard]] virtual std::size_t count() const = 0;
-  /// Greatest wave number β [1/m] among the functions: bodies choose their quadrature by it.
+  /// Greatest wave number β [1/m] among the functions: bodies choose their quadrature by it. At most most_waves / L.
   [[nodiscard]] virtual double wave_number() const = 0;
   /// Where a strain, φ″ in bending and else φ′, may have a kink or a step, between 0 and L, increasing.
   [[nodiscard]] virtual std::vector<double> kinks() const { return {}; }
@@ -64,9 +64,9 @@ class ModeFamily {
 };
 
 /// What is wrong with the functions that a family gives where `count` are asked for, or empty: another number of them,
-/// a wave number that is none, numbers that are not finite, and slopes, in bending curvatures too, that are not the
-/// derivatives. These are compared at four places with differences over steps from 1e-2 to 1e-5 of 1/β, to 1e-4 of the
-/// greatest; one that agrees will do.
+/// a wave number that is none or beyond most_waves / L, kinks that do not increase from 0 to L, numbers that are not
+/// finite, and slopes, in bending curvatures too, that are not the derivatives. These are compared at four places with
+/// differences over steps from 1e-2 to 1e-5 of 1/β, to 1e-4 of the greatest; one that agrees will do.
 std::string find_fault(const ShapeFunctions& functions, const BeamData& beam, std::size_t count);
 
 /// The family that a scene's checked `family` names, as in make_shape_functions(). Null after reporting.

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/most_waves.hpp"
 
 namespace withy {
 namespace {
@@ -111,6 +112,22 @@ class ComparedFunctions {
   std::vector<ShapeValues> places_;
 };
 
+/// Ends of the beam may be among them, and one twice: nothing is integrated there.
+std::string kinks_fault(const std::vector<double>& kinks, double length) {
+  double before = 0;
+  for (const double kink : kinks) {
+    if (kink >= before && kink <= length) {
+      before = kink;
+      continue;
+    }
+    std::ostringstream text;
+    text << "they have a kink at x = " << kink << " m behind " << before << " m; need increasing ones from 0 to "
+         << length << " m";
+    return text.str();
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string find_fault(const ShapeFunctions& functions, const BeamData& beam, std::size_t count) {
@@ -119,10 +136,16 @@ std::string find_fault(const ShapeFunctions& functions, const BeamData& beam, st
     text << "there are " << functions.count() << ", where " << count << " are asked for";
     return text.str();
   }
-  if (const double beta = functions.wave_number(); !std::isfinite(beta) || beta < 0) {
+  const double beta = functions.wave_number();
+  if (!std::isfinite(beta) || beta < 0) {
     text << "their greatest wave number is " << beta;
     return text.str();
   }
+  if (beta * beam.length > most_waves) {
+    text << "their greatest wave number times the length is " << beta * beam.length << "; need at most " << most_waves;
+    return text.str();
+  }
+  if (std::string fault = kinks_fault(functions.kinks(), beam.length); !fault.empty()) return fault;
   return ComparedFunctions(functions, beam).fault();
 }
 

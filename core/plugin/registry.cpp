@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "withy/core/plugin/parameter_faults.hpp"
+
 namespace withy {
 namespace {
 
@@ -15,6 +17,8 @@ void check(const std::vector<Plugin<Interface>>& incoming, const Map& present, c
     if (!is_plugin_id(plugin.id))
       throw std::invalid_argument(name + " from " + origin + ": ids are 1 to 64 of a-z, 0-9 and '-'");
     if (plugin.make == nullptr) throw std::invalid_argument(name + " from " + origin + " has no factory");
+    if (const std::string fault = parameter_fault(plugin.parameters); !fault.empty())
+      throw std::invalid_argument(name + " from " + origin + ": " + fault);
     if (const auto it = present.find(plugin.id); it != present.end()) {
       throw std::invalid_argument(name + " is in two places: " + it->second.origin + " and " + origin);
     }

@@ -130,7 +130,8 @@ class Enrollment {
 class Registry {
  public:
   /// Admits all plugins of a library, or none.
-  /// \throws std::invalid_argument where an id is malformed, taken (both origins are named) or a factory is null.
+  /// \throws std::invalid_argument where an id is malformed, taken (both origins are named), a factory is null or a
+  /// parameter cannot be (parameter_faults.hpp).
   void admit(Enrollment enrollment, const std::string& origin);
 
   /// The plugin of a kind with this id; null where there is none. It may load a library: see set_loader.

@@ -29,7 +29,7 @@ class Rod {
   virtual ~Rod() = default;
   [[nodiscard]] virtual Eigen::Index modes() const = 0;
   [[nodiscard]] virtual double length() const = 0;  ///< [m]
-  /// Greatest wave number [1/m] of the strains: the quadrature is chosen by it.
+  /// Greatest wave number [1/m] of the strains: the quadrature is chosen by it. At most most_waves / length().
   [[nodiscard]] virtual double wave_number() const = 0;
   /// Where sections change without being smooth, between 0 and the length, increasing: the quadrature has its panels
   /// between them.

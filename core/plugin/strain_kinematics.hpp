@@ -2,6 +2,7 @@
 /// The interface of strain kinematics: which relations between displacements and strains hold.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "withy/core/plugin/terms.hpp"
@@ -50,5 +51,9 @@ class CompleteSecondOrder : public StrainKinematics {
   [[nodiscard]] StrainOrder order() const override { return StrainOrder::quadratic; }
   [[nodiscard]] bool complete() const override { return true; }
 };
+
+/// What is wrong with a strain kinematics, or empty: no name, or of second order slopes that are not finite or not
+/// symmetric in their two fields, found of three pairs of these. Whatever it throws comes out.
+std::string find_fault(const StrainKinematics& kinematics);
 
 }  // namespace withy

@@ -98,7 +98,44 @@ std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equatio
   return text;
 }
 
+/// Loads that have renewed what they hold to no number, so that what depends on it is none.
+std::string describe_held(const Model& model, const State& state) {
+  std::string text;
+  for (const LoadSlot& slot : model.layout().discrete_slots) {
+    const auto held = std::span(state.y).subspan(slot.first, slot.count);
+    if (std::none_of(held.begin(), held.end(), [](double d) { return std::isnan(d); })) continue;
+    text += (text.empty() ? "" : "; ") + ("load '" + model.loads()[slot.load].name + "' holds no number") +
+            " in its discrete states";
+  }
+  return text;
+}
+
+std::string shown_number(double x) { return std::isnan(x) ? "nan" : brief(x); }
+
 }  // namespace
+
+std::string nonfinite_number(const Layout& layout, const State& state) {
+  if (state.y.size() != layout.size()) return {};  // of equations that are another's
+  const auto told = [&](const std::string& what, std::size_t at) { return what + " is " + shown_number(state.y[at]); };
+  const auto of_slots = [&](const std::vector<Slot>& slots) -> std::string {
+    for (const Slot& slot : slots)
+      for (std::size_t i = 0; i < slot.positions; ++i)
+        if (const std::size_t at = slot.position + i; !std::isfinite(state.y[at]))
+          return told(slot.positions == slot.speeds ? "the coordinate '" + layout.speed_names[slot.speed + i] + "'"
+                                                    : "a coordinate of '" + slot.name + "'",
+                      at);
+    return {};
+  };
+  if (std::string text = of_slots(layout.hinges); !text.empty()) return text;
+  if (std::string text = of_slots(layout.bodies); !text.empty()) return text;
+  for (std::size_t i = 0; i < layout.speeds; ++i)
+    if (const std::size_t at = layout.positions + i; !std::isfinite(state.y[at]))
+      return told("the speed '" + layout.speed_names[i] + "'", at);
+  for (std::size_t i = 0; i < layout.continuous; ++i)
+    if (const std::size_t at = layout.positions + layout.speeds + i; !std::isfinite(state.y[at]))
+      return told("the state '" + layout.continuous_names[i] + "'", at);
+  return std::isfinite(state.y.back()) ? "" : told("the work", state.y.size() - 1);
+}
 
 std::string owners_of(const Layout& layout, std::span<const double> unit_vector) {
   const Eigen::Map<const Eigen::VectorXd> direction(unit_vector.data(), static_cast<Eigen::Index>(unit_vector.size()));
@@ -258,6 +295,7 @@ NonfiniteRates nonfinite_rates(const Model& model, const State& state, double ah
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead) {
   if (const std::string loads = nonfinite_loads(model, equations, state, ahead); !loads.empty()) return loads;
+  if (const std::string held = describe_held(model, state); !held.empty()) return held;
   const Layout& layout = equations.layout();
   std::vector<std::string> names;
   for (std::size_t i = 0; i < layout.speeds; ++i) {

@@ -74,8 +74,12 @@ struct NonfiniteRates {
 /// Looks at the state and at times up to `ahead` seconds later.
 NonfiniteRates nonfinite_rates(const Model& model, const State& state, double ahead);
 
-/// Names what is not finite at the state or, for loads, up to `ahead` seconds later: loads, speeds, accelerations.
-/// Empty where all of it is finite.
+/// The first of a state's numbers that is not finite, discrete states left out: "the coordinate 'elbow.0' is nan".
+/// Empty where all are finite, or the state has another count of numbers than the layout.
+std::string nonfinite_number(const Layout& layout, const State& state);
+
+/// Names what is not finite at the state or, for loads, up to `ahead` seconds later: loads, what they hold,
+/// coordinates, speeds, accelerations. Empty where all of it is finite.
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead);
 

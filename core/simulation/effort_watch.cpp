@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "withy/core/simulation/cubic.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 
 namespace withy {
 
@@ -86,7 +87,7 @@ void EffortWatch::observe(const Stepper& stepper) {
     const double parts = std::ceil(step / longest_);
     for (double i = 1; i < parts; ++i) {
       between_.state.time = before + step * (i / parts);
-      stepper.interpolate(between_.state.time, between_.state.y);
+      interpolate_step(stepper, between_.state.time, between_.state.y);
       evaluate(between_);
       raise(between_);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 
 namespace withy {
 namespace {
@@ -57,7 +58,7 @@ double LoopWatch::kept_until(const Stepper& stepper, const State& before, const 
   if (halvings == 0) return before.time;
   State& middle = between_[halvings - 1];
   middle.time = before.time + (after.time - before.time) / 2;
-  stepper.interpolate(middle.time, middle.y);
+  interpolate_step(stepper, middle.time, middle.y);
   const double first = kept_until(stepper, before, middle, halvings - 1);
   return first < middle.time ? first : kept_until(stepper, middle, after, halvings - 1);
 }

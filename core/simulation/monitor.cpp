@@ -27,8 +27,10 @@ bool may_float(const Model& model) {
   return floats;
 }
 
-/// Why a state has no energy although its numbers are finite: the greatest of its speeds, squared, is beyond all.
+/// Why a state has no energy: one of its numbers is none, or the greatest of its speeds, squared, is beyond all.
 std::string without_energy(const Layout& layout, const State& state) {
+  if (const std::string number = nonfinite_number(layout, state); !number.empty())
+    return "the energy is not finite: " + number;
   const auto speeds = std::span(state.y).subspan(layout.positions, layout.speeds);
   const auto fastest =
       std::max_element(speeds.begin(), speeds.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "withy/core/plugin/just_before.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/parabola.hpp"
 
 namespace withy {
@@ -77,7 +78,7 @@ void StatisticsWatch::observe(const Stepper& stepper) {
     begin_at(stepper.state());
     return;
   }
-  stepper.interpolate(from, between_.y);
+  interpolate_step(stepper, from, between_.y);
   const std::size_t parts = parts_(h, between_.y, stepper.state().y);
   for (std::size_t k = 1; k < parts; ++k)
     observe_part(stepper, from + h * static_cast<double>(k) / static_cast<double>(parts));
@@ -93,7 +94,7 @@ void StatisticsWatch::observe_part(const Stepper& stepper, double to) {
       break;
     }
     between_.time = end ? to : from_ + h * static_cast<double>(k) / (places - 1);
-    stepper.interpolate(between_.time, between_.y);
+    interpolate_step(stepper, between_.time, between_.y);
     read(between_, within_[k]);
   }
   for (std::size_t k = 0; k < places; ++k) note(from_ + h * static_cast<double>(k) / (places - 1), within_[k]);
@@ -137,7 +138,7 @@ void StatisticsWatch::refine(const Stepper& stepper, std::size_t result, double 
     const double at = vertex(t, x), known = sign > 0 ? r.greatest : -r.least;
     if (at == t[0] || at == t[1] || at == t[2] || sign * along(t, x, at) <= known) return;
     between_.time = at;
-    stepper.interpolate(at, between_.y);
+    interpolate_step(stepper, at, between_.y);
     read(between_, now_);
     if (!std::isfinite(now_[result])) return;
     note(at, now_);

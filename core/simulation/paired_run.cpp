@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/stepping.hpp"
 
@@ -207,7 +208,8 @@ PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const E
   pair.put(begun(model, second, initial).y, 1, both.y);
   PairObserver observer(pair, {Renewal(model, first), Renewal(model, second)}, options, initial, output);
   const double never = 2 * (std::abs(initial.time) + std::abs(options.end)) + 1;
-  Stepping loop(model, pair, integrator.start(pair, both), {options.end, options.at_steps ? never : options.output});
+  Stepping loop(model, pair, start_stepper(integrator, pair, both),
+                {options.end, options.at_steps ? never : options.output});
   observer.output(both);
   loop.run(observer);
   if (loop.state().time > observer.emitted()) observer.output(loop.state());

@@ -7,6 +7,7 @@
 
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 
 namespace withy {
 namespace {
@@ -24,7 +25,7 @@ Session::Session(const Model& model, const EquationsOfMotion& equations, const I
       options_(std::move(options)),
       initial_(begun(model, equations, initial)),
       actions_(model, equations, options_.events),
-      loop_(model, equations, integrator.start(equations, initial_),
+      loop_(model, equations, start_stepper(integrator, equations, initial_),
             {.end = initial.time,
              .output = infinity,
              .events = actions_.watched(),
@@ -165,6 +166,8 @@ bool Session::after_step(const Stepper& stepper, bool /*outputs*/) {
     stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
   } else if (!monitor_.excess().empty()) {
     stop_ = {RunStatus::diverged, monitor_.excess()};
+  } else if (const std::string number = nonfinite_number(model_.layout(), stepper.state()); !number.empty()) {
+    stop_ = {RunStatus::diverged, "the state is not finite: " + number, false};
   }
   return stop_.status == RunStatus::completed;
 }
@@ -189,7 +192,7 @@ Checkpoint Session::snapshot() {
   if (ended_) throw std::logic_error("the simulation has come to its end: from there nothing goes on");
   Memory memory;
   remember(memory);
-  return {state(), stepper().memory(), memory.numbers()};
+  return {state(), loop_.stepper_memory(), memory.numbers()};
 }
 
 void Session::go_on_from(const Checkpoint& snapshot) {

@@ -11,6 +11,7 @@
 #include "withy/core/simulation/end_notes.hpp"
 #include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/loop_following.hpp"
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/monitor.hpp"
@@ -37,7 +38,7 @@ class Run final : public SteppingObserver {
         summary_(summary),
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
         actions_(model, equations, options.events),
-        loop_(model, equations, integrator.start(equations, begun(model, equations, initial)),
+        loop_(model, equations, start_stepper(integrator, equations, begun(model, equations, initial)),
               {options.end, options.output, actions_.watched(), hand_overs_, &actions_}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary, attention),
@@ -61,6 +62,10 @@ class Run final : public SteppingObserver {
     SteppingEnd end = loop_.run(*this);
     while (options_.past_stops && end.cause == SteppingEnd::Cause::event) end = loop_.run(*this);
     if (end.cause == SteppingEnd::Cause::stopped) return stop_;
+    // Not every step is audited.
+    const bool ended = end.cause == SteppingEnd::Cause::reached || end.cause == SteppingEnd::Cause::event;
+    if (const std::string number = ended ? nonfinite_number(model_.layout(), loop_.state()) : ""; !number.empty())
+      return {RunStatus::diverged, "the state is not finite: " + number, false};
     return stop_of(end, model_, equations_, loop_.state(), loop_.stepper().statistics());
   }
 
@@ -91,7 +96,7 @@ class Run final : public SteppingObserver {
     if (options_.checkpoint && (interrupted || (options_.checkpoint_due && options_.checkpoint_due()))) save();
     if (interrupted) {
       stop_ = {RunStatus::interrupted, "interrupted", false};
-    } else if (stepper.statistics().accepted >= options_.most_steps) {
+    } else if (halves_.made(stepper) >= options_.most_steps) {
       stop_ = {RunStatus::interrupted, "stopped after the " + std::to_string(options_.most_steps) + " steps allowed",
                false};
     } else if (options_.most_seconds > 0 && seconds() > options_.most_seconds) {
@@ -203,7 +208,7 @@ class Run final : public SteppingObserver {
   void save() {
     Memory memory;
     remember(memory);
-    options_.checkpoint({loop_.state(), loop_.stepper().memory(), memory.numbers()});
+    options_.checkpoint({loop_.state(), loop_.stepper_memory(), memory.numbers()});
   }
   void restore(const Checkpoint& checkpoint) {
     if (options_.changing != nullptr) options_.changing->go_over(checkpoint.state.time);
@@ -310,7 +315,7 @@ std::string message_of_completed(const Run& run, const Model& model, const RunSu
   }
   if (const std::string missed = note_on_missed_events(model, summary.final); !missed.empty()) add(missed);
   if (!summary.suspected_jumps.empty()) add(note_on_jumps(model, summary.suspected_jumps));
-  for (const std::string& remark : run.stepper().remarks()) add("The integrator: " + remark + ".");
+  for (const std::string& remark : remarks_of(run.stepper())) add("The integrator: " + remark + ".");
   if (const std::string given = note_on_given_steps(run.stepper(), summary.energy_scale); !given.empty()) add(given);
   if (const std::string closing = closing_text(run.equations(), run.stepper()); !closing.empty()) add(closing);
   return text;

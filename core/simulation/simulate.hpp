@@ -58,6 +58,7 @@ struct RunOptions {
   bool own_energy = false;
   /// Motion with no speed above this [m/s, rad/s] is rounding, and its energy balances or not.
   double least_speed = 1e-12;
+  /// As the stepper counts its steps or, where it counts too few, as it was asked for them.
   std::size_t most_steps = 100'000'000;
   /// Asked now and then where at the pace of the steps so far, or of the later half of very many, `most_steps` are too
   /// few to come to the end: why they are from this state on as well, in a clause without a full stop, which ends the

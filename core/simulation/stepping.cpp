@@ -5,9 +5,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/given_steps.hpp"
 #include "withy/core/plugin/registry.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/same_instant.hpp"
 
 namespace withy {
@@ -36,7 +38,8 @@ Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::
       looks_over_(has_given_steps(*stepper_) || !TimeCourses::are_in(model) ? 0 : options.looks_over),
       looked_until_(looks_over_ > 0 ? start_ : std::numeric_limits<double>::infinity()),
       end_(options.end),
-      sample_(stepper_->state()) {
+      sample_(stepper_->state()),
+      shown_(sample_.y.size() == model.layout().size() ? model.layout().moving() : 0) {
   if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr &&
       dynamic_cast<const ClosingStepper*>(stepper_.get()) == nullptr)
     throw std::invalid_argument(
@@ -69,7 +72,7 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
     }
     if (!jumps) continue;
     observer_->landed(state());
-    stepper_->restart();
+    integrator_call("does not begin anew", [&] { stepper_->restart(); });
     observer_->restarted();
   }
   return ended_;
@@ -99,7 +102,7 @@ bool Stepping::act(std::span<const std::size_t> happened) {
       return end(Cause::failed);
     }
     if (done.crowded || round > most_zeros_at_once) return end(Cause::crowded);
-    stepper_->jump(sample_);
+    jump_to(sample_);
     observer_->acted(acted_on_, state());
     observer_->jumped();
     if (done.stops) return end(Cause::event);
@@ -125,7 +128,7 @@ bool Stepping::leap(const std::vector<std::size_t>& acted) {
       happened_.push_back(event);
     }
   }
-  if (!handled_.empty()) stepper_->jump(sample_);
+  if (!handled_.empty()) jump_to(sample_);
   return !stops || end(Cause::event);
 }
 
@@ -166,7 +169,7 @@ bool Stepping::renew_clocks() {
   observer_->renew(clocks_, sample_);
   if (!sound(sample_)) return false;
   clocks_.go_on_after(sample_.time);
-  stepper_->jump(sample_);
+  jump_to(sample_);
   handled_ = zeros_.leap(sample_);
   observer_->jumped();
   happened_.clear();
@@ -182,12 +185,40 @@ bool Stepping::renew_clocks() {
 void Stepping::step_to(double limit) {
   const double from = state().time;
   const std::size_t made = stepper_->statistics().evaluations;
-  ended_.step = stepper_->step(limit);
+  ended_.step = integrator_call("does not step", [&] { return stepper_->step(limit); });
   step_evaluations_ += stepper_->statistics().evaluations - made;
-  if (ended_.step.outcome != StepResult::Outcome::ok || (state().time > from && state().time <= limit)) return;
-  throw PluginError("the integrator of this scene says of a step that it is done, which began at " +
-                    std::to_string(from) + " s, was to end at " + std::to_string(limit) +
-                    " s at the latest, and ended at " + std::to_string(state().time) + " s: no result can be trusted");
+  check_step(from, limit);
+  if (ended_.step.outcome == StepResult::Outcome::ok && crawls(from, limit))
+    ended_.step = {StepResult::Outcome::step_underflow};
+}
+
+void Stepping::check_step(double from, double limit) const {
+  using enum StepResult::Outcome;
+  if (state().y.size() != sample_.y.size())
+    throw IntegratorError("does not step: it leaves " + std::to_string(state().y.size()) +
+                          " numbers in the state where " + std::to_string(sample_.y.size()) + " are due");
+  const StepResult::Outcome outcome = ended_.step.outcome;
+  if (outcome != ok && outcome != nonfinite && outcome != singular && outcome != step_underflow)
+    throw IntegratorError("does not step: it ends with an outcome that there is not, " +
+                          std::to_string(static_cast<int>(outcome)));
+  if (outcome != ok || (state().time > from && state().time <= limit)) return;
+  throw IntegratorError("says of a step that it is done, which began at " + std::to_string(from) +
+                        " s, was to end at " + std::to_string(limit) + " s at the latest, and ended at " +
+                        std::to_string(state().time) + " s: no result can be trusted");
+}
+
+/// Whether step after step gains less than time resolves where it is to come to: none of them is an error, and all
+/// together come nowhere.
+bool Stepping::crawls(double from, double limit) {
+  constexpr int many = 10'000;
+  const double there = std::isfinite(limit) ? std::max(std::abs(from), std::abs(limit)) : std::abs(from);
+  const bool below = state().time - from < std::numeric_limits<double>::epsilon() * there;
+  steps_below_resolution_ = below ? steps_below_resolution_ + 1 : 0;
+  return steps_below_resolution_ > many;
+}
+
+void Stepping::jump_to(const State& state) {
+  integrator_call("does not go to another state", [&] { stepper_->jump(state); });
 }
 
 /// Steps to a time; false where stepping ends before. Not watching: a step taken back is made again to end at a zero,
@@ -228,11 +259,22 @@ bool Stepping::after_step() {
   const bool outputs = times_.due(time);
   for (; times_.due(time); times_.pass()) {
     sample_.time = times_.next();
-    stepper_->interpolate(sample_.time, sample_.y);
+    interpolate_step(*stepper_, sample_.time, sample_.y);
+    if (!sample_is_known()) return end(Cause::unknown_inside);
     sample_.time = from_jump_on(jumps_, sample_.time);
     if (!observer_->output(sample_)) return end(Cause::stopped);
   }
   return observer_->after_step(*stepper_, outputs) || end(Cause::stopped);
+}
+
+/// Whether an output within the last step is finite, or is not because the step itself has ended so.
+bool Stepping::sample_is_known() const {
+  const auto finite = [this](const State& s) {
+    double nothing = 0;  // or NaN
+    for (std::size_t i = 0; i < shown_; ++i) nothing += 0.0 * s.y[i];
+    return nothing == 0;
+  };
+  return finite(sample_) || !finite(state());
 }
 
 void Stepping::note(const Zero& zero) {
@@ -284,7 +326,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
     zeros_at_once_ = 0;
   }
   last_zero_ = time;
-  stepper_->jump(before_);
+  jump_to(before_);
   if (!to(time, false)) return false;
   const std::vector<Zero>& others = zeros_.land(before_, state(), handled_);
   handled_.insert(handled_.end(), others.begin(), others.end());
@@ -305,7 +347,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
       stops = stops || zeros_.event(zero.function).stops;
     }
   }
-  stepper_->jump(sample_);
+  jump_to(sample_);
   observer_->jumped();
   if (!happened_.empty() && !act(std::vector<std::size_t>(happened_))) return false;
   return !stops || end(Cause::event);
@@ -314,8 +356,12 @@ bool Stepping::cut_at(double time, std::size_t noted) {
 void Stepping::resume(const State& state, std::span<const double> memory) {
   if (const std::string why = clocks_.refusal(state); !why.empty()) throw std::invalid_argument(why);
   clocks_.forget();
-  stepper_->resume(state, memory);
+  plugin_call("the integrator does not go on from what was saved", [&] { stepper_->resume(state, memory); });
   clocks_.go_on_after(state.time);
+}
+
+std::vector<double> Stepping::stepper_memory() const {
+  return integrator_call("does not say what it remembers", [&] { return stepper_->memory(); });
 }
 
 void Stepping::remember(Memory& memory) {

@@ -23,11 +23,12 @@ namespace withy {
 /// How stepping ended.
 struct SteppingEnd {
   enum class Cause {
-    reached,  ///< the end
-    event,    ///< an event that stops the run
-    stopped,  ///< the observer said so
-    failed,   ///< no step can be made: `step` says why
-    crowded   ///< switches or events follow each other again and again without time between them
+    reached,        ///< the end
+    event,          ///< an event that stops the run
+    stopped,        ///< the observer said so
+    failed,         ///< no step can be made: `step` says why
+    crowded,        ///< switches or events follow each other again and again without time between them
+    unknown_inside  ///< an output within the last step is not finite, where the states at its ends are
   };
   Cause cause = Cause::reached;
   StepResult step;
@@ -86,7 +87,8 @@ class Stepping {
            const SteppingOptions& options);
   /// Steps to the end. Steps land on discontinuities of loads and motions, on the instants of discrete states and on
   /// the end bit by bit. The states at the start and at the end are no outputs.
-  /// \throws PluginError after the step in which a plugin has changed the processor's arithmetic.
+  /// \throws IntegratorError where the integrator throws, or makes what is no step; PluginError after the step in which
+  /// a plugin has changed the processor's arithmetic.
   SteppingEnd run(SteppingObserver& observer);
   /// Moves the end, for `run` to go on. Where nothing jumps at the present end the stepper goes on as it was.
   void move_end(double end) { end_ = end; }
@@ -99,6 +101,8 @@ class Stepping {
   /// Goes on from a checkpoint's state and the numbers that Stepper::memory gave for it.
   /// \throws std::invalid_argument as Stepper::resume.
   void resume(const State& state, std::span<const double> memory);
+  /// Stepper::memory. \throws IntegratorError
+  [[nodiscard]] std::vector<double> stepper_memory() const;
   /// What the loop knows beyond the stepper.
   void remember(Memory& memory);
 
@@ -107,6 +111,10 @@ class Stepping {
   bool to(double limit, bool watching);
   bool after_step();
   void step_to(double limit);
+  void check_step(double from, double limit) const;
+  [[nodiscard]] bool crawls(double from, double limit);
+  void jump_to(const State& state);
+  [[nodiscard]] bool sample_is_known() const;
   void check_arithmetic();
   bool act(std::span<const std::size_t> happened);
   bool leap(const std::vector<std::size_t>& acted);
@@ -145,6 +153,8 @@ class Stepping {
   double last_zero_ = -std::numeric_limits<double>::infinity();  ///< time of the last one that changed the run
   double beyond_kink_ = last_zero_;                              ///< where the step ends that begins at a kink [s]
   int zeros_at_once_ = 0;
+  int steps_below_resolution_ = 0;  ///< in a row
+  std::size_t shown_;               ///< of the first numbers of y: what outputs tell of motion
   std::size_t step_evaluations_ = 0;
   FloatingPointGuard* arithmetic_ = nullptr;  ///< of the run under way
 };

@@ -32,14 +32,17 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
              const StepStatistics& steps) {
   if (end.cause == SteppingEnd::Cause::crowded)
     return {RunStatus::step_underflow, "switches or events follow each other without time between them"};
+  if (end.cause == SteppingEnd::Cause::unknown_inside)
+    return {RunStatus::diverged,
+            "the integrator's states within its last step are not finite, where those at its ends are", false};
   if (end.cause != SteppingEnd::Cause::failed) return {};
   if (!end.reason.empty()) return {RunStatus::load_failed, end.reason, false};
   const StepResult& result = end.step;
   if (result.outcome == StepResult::Outcome::nonfinite || result.outcome == StepResult::Outcome::step_underflow)
     if (const auto motion = nonfinite_motion(model, state.time, steps.largest_step))
       return {RunStatus::diverged, text_of(*motion), false};
-  const std::string body =
-      result.body >= 0 ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
+  const bool known = result.body >= 0 && static_cast<std::size_t>(result.body) < model.bodies().size();
+  const std::string body = known ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
   switch (result.outcome) {
     case StepResult::Outcome::nonfinite: {
       const std::string culprit = describe_nonfinite(model, equations, state, steps.largest_step);

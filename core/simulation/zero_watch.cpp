@@ -7,6 +7,7 @@
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/cubic.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/parabola.hpp"
 
 namespace withy {
@@ -179,7 +180,7 @@ void ZeroWatch::look_at(const Course& course, double t) {
   if (course.by_ends) {
     between(course.before, course.stepper.state(), t);
   } else {
-    course.stepper.interpolate(t, inside_.y);
+    interpolate_step(course.stepper, t, inside_.y);
   }
   evaluate(t, inside_.y, values_);
 }

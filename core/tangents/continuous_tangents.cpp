@@ -1,5 +1,6 @@
 #include "withy/core/tangents/continuous_tangents.hpp"
 
+#include "withy/core/tangents/load_derivatives.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
 #include "withy/core/tangents/refined_difference.hpp"
 
@@ -64,7 +65,9 @@ ContinuousTangents continuous_tangents(const Model& model, double t, std::span<c
                              all.rate_by_speed.middleRows(first, count),
                              all.rate_by_state.block(first, first, count, count)};
     if (of_wrenches && !node.load->frames().empty()) differenced[slot.load] = true;
-    if (node.continuous->add_derivatives(node.view(t, y, layout, scratch), to)) continue;
+    if (derivatives_call(node.name,
+                         [&] { return node.continuous->add_derivatives(node.view(t, y, layout, scratch), to); }))
+      continue;
     differenced[slot.load] = true;
     const auto part = [&](std::span<const double> at) {
       Eigen::VectorXd both = Eigen::VectorXd::Zero(n + count);

@@ -1,25 +1,13 @@
 #include <Eigen/QR>
 
 #include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/tangents/load_derivatives.hpp"
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
 namespace withy {
 
 void TangentDynamics::displace(std::span<double> y, const Eigen::VectorXd& delta) const {
-  const Layout& layout = model_->layout();
-  const std::span<const double> d(delta.data(), layout.speeds);
-  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
-    const Slot& slot = layout.hinges[h];
-    const Hinge& hinge = *model_->hinges()[h].hinge;
-    const auto x = y.subspan(slot.position, slot.positions);
-    std::vector<double> change(slot.positions);
-    hinge.derivatives(x, d.subspan(slot.speed, slot.speeds), change);
-    for (std::size_t i = 0; i < slot.positions; ++i) x[i] += change[i];
-    hinge.normalize(x);
-  }
-  for (const Slot& slot : layout.bodies) {
-    for (std::size_t i = 0; i < slot.positions; ++i) y[slot.position + i] += d[slot.speed + i];
-  }
+  withy::displace(*model_, y, {delta.data(), model_->layout().speeds});
 }
 
 Eigen::MatrixXd TangentDynamics::drift(std::span<const double> y) const {

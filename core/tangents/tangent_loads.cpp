@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "withy/core/tangents/continuous_tangents.hpp"
+#include "withy/core/tangents/load_derivatives.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
 #include "withy/core/tangents/refined_difference.hpp"
 #include "withy/core/tangents/tangent_dynamics.hpp"
@@ -69,7 +70,8 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, const Eigen
     const auto positions = y.first(layout.positions), speeds = y.subspan(layout.positions, layout.speeds);
     const Eigen::VectorXd diagonal_before = by_position.diagonal();
     const auto note_terms = [&] { tangents.in_play += (by_position.diagonal() - diagonal_before).cwiseAbs(); };
-    if (load.add_derivatives(t, positions, speeds, by_position, by_speed)) {
+    if (derivatives_call(node.name,
+                         [&] { return load.add_derivatives(t, positions, speeds, by_position, by_speed); })) {
       note_terms();
       continue;
     }

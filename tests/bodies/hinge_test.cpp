@@ -1,6 +1,10 @@
+#include <memory>
 #include <numbers>
+#include <optional>
 
+#include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/validate.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/tests/conformance/hinge_suite.hpp"
 #include "withy/tests/conformance/plugins.hpp"
@@ -114,6 +118,52 @@ TEST(Hinge, directions_that_do_not_do_are_errors) {
   EXPECT_EQ(problem("universal", {{"second_axis", direction(-2, 0, 0)}}),
             "is parallel to 'first_axis'; need two directions");
   EXPECT_EQ(problem("planar", {{"normal", direction(1, 0, 0)}}), "is parallel to 'normal'; need a direction across it");
+}
+
+/// Slides along x by an angle times a radius of 2 m, or turns about z by an arc over it.
+class RollingCoordinate final : public Hinge {
+ public:
+  RollingCoordinate(bool turns, std::optional<bool> said) : turns_(turns), said_(said) {}
+  std::size_t coordinates() const override { return 1; }
+  std::size_t speeds() const override { return 1; }
+  void reference(std::span<double> x) const noexcept override { x[0] = 0; }
+  void motion(std::span<const double> x, std::span<const double>, HingeMotion& out) const noexcept override {
+    out.pose = {};
+    out.H.setZero(6, 1);
+    out.bias.setZero();
+    if (turns_) {
+      out.pose.R = Eigen::AngleAxisd(x[0] / 2, Vector3::UnitZ()).toRotationMatrix();
+      out.H(2, 0) = 0.5;
+    } else {
+      out.pose.p.x() = 2 * x[0];
+      out.H(3, 0) = 2;
+    }
+  }
+  void derivatives(std::span<const double>, std::span<const double> rates,
+                   std::span<double> x_dot) const noexcept override {
+    x_dot[0] = rates[0];
+  }
+  void normalize(std::span<double>) const noexcept override {}
+  std::optional<HingeKernel> kernel() const override { return {}; }
+  std::optional<bool> angular(std::size_t) const override { return said_; }
+
+ private:
+  bool turns_;
+  std::optional<bool> said_;
+};
+
+TEST(HingeRates, are_of_angles_or_lengths_as_the_hinge_says_and_else_by_whether_it_turns) {
+  const auto column = [](bool turns, std::optional<bool> said) {
+    HingeNode node;
+    node.name = "h";
+    node.hinge = std::make_shared<RollingCoordinate>(turns, said);
+    EXPECT_EQ(find_fault(*node.hinge), "");
+    return coordinate_columns(node)[0].unit + ", " + rate_columns(node)[0].unit;
+  };
+  EXPECT_EQ(column(false, {}), "m, m/s");
+  EXPECT_EQ(column(true, {}), "rad, rad/s");
+  EXPECT_EQ(column(false, true), "rad, rad/s");
+  EXPECT_EQ(column(true, false), "m, m/s");
 }
 
 // Which rates turn, and which coordinate each is the derivative of; −1: of none.

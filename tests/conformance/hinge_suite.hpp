@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/hinge.hpp"
 
 namespace withy::test {
@@ -39,7 +40,8 @@ inline HingeMotion motion_at(const Hinge& hinge, const HingePoint& p, double h) 
   return m;
 }
 
-/// V_FM = H ẋ is the rate of the pose: Ṙ = R ω̂, ṗ = R v; and `bias` that of H at constant rates.
+/// V_FM = H ẋ is the rate of the pose: Ṙ = R ω̂, ṗ = R v; and `bias` that of H at constant rates. Pose and H are those
+/// of the coordinates alone.
 inline void expect_rates_are_derivatives(const Hinge& hinge) {
   std::mt19937 random(1);
   for (int k = 0; k < 20; ++k) {
@@ -53,6 +55,13 @@ inline void expect_rates_are_derivatives(const Hinge& hinge) {
     EXPECT_LT(((ahead.pose.p - behind.pose.p) / (2 * h) - m.pose.R * V.tail<3>()).norm(), hinge_tolerance);
     EXPECT_LT(((ahead.H * u - behind.H * u) / (2 * h) - m.bias).norm(), hinge_tolerance);
     EXPECT_LT((m.pose.R * m.pose.R.transpose() - Matrix3::Identity()).norm(), 1e-14);
+    EXPECT_GT(m.pose.R.determinant(), 0) << "a reflection";
+    EXPECT_EQ(m.H.cols(), static_cast<Eigen::Index>(p.u.size()));
+    const HingeMotion still = motion_at(hinge, {p.x, std::vector<double>(p.u.size(), 0.0)}, 0);
+    EXPECT_EQ(still.pose.R, m.pose.R) << "where it is does not depend on its rates";
+    EXPECT_EQ(still.pose.p, m.pose.p);
+    EXPECT_EQ(still.H, m.H);
+    EXPECT_TRUE(still.bias.isZero(0));
   }
 }
 
@@ -127,6 +136,7 @@ inline void expect_kernel_is_the_motion(const Hinge& hinge) {
 }
 
 inline void expect_hinge_conforms(const Hinge& hinge) {
+  ASSERT_EQ(find_fault(hinge), "");
   expect_rates_are_derivatives(hinge);
   expect_motion_derivatives(hinge);
   expect_reference_and_normalization(hinge);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -60,6 +61,28 @@ class IntegratorSuite : public testing::TestWithParam<IntegratorCase> {
     return e;
   }
 };
+
+TEST_P(IntegratorSuite, is_stable_to_a_positive_step_or_does_not_say_and_begins_where_it_is_told) {
+  const auto integrator = with_step(0.1);
+  if (const auto limit = integrator->stability_limit()) {
+    EXPECT_GT(*limit, 0);
+  }
+  EXPECT_GE(integrator->order(), 1);
+  const FunctionEquations equations = Duffing::equations();
+  State start = Duffing::start();
+  start.time = 0.25;
+  const auto stepper = integrator->start(equations, start);
+  ASSERT_NE(stepper, nullptr);
+  EXPECT_EQ(stepper->state().time, start.time);
+  EXPECT_EQ(stepper->state().y, start.y);
+  ASSERT_EQ(stepper->step(0.25 + 1e-3).outcome, StepResult::Outcome::ok);
+  EXPECT_EQ(stepper->state().y.size(), start.y.size());
+  EXPECT_GT(stepper->state().time, start.time);
+  EXPECT_LE(stepper->state().time, 0.25 + 1e-3);
+  std::vector<double> inside(start.y.size(), std::nan(""));
+  stepper->interpolate(0.5 * (start.time + stepper->state().time), inside);
+  for (const double y : inside) EXPECT_TRUE(std::isfinite(y));
+}
 
 // Halving the step divides the error by 2^order. The steps are short enough for the next order to matter by less than
 // 0.1 and long enough for rounding not to; a method may be better than it says by a fortunate 0.6.

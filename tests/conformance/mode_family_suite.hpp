@@ -76,6 +76,7 @@ inline void expect_family_conforms(const ModeFamily& family, const BeamData& bea
   const auto f = family.functions(beam, count);
   ASSERT_NE(f, nullptr);
   ASSERT_EQ(f->count(), count);
+  ASSERT_EQ(find_fault(*f, beam, count), "") << "kinks, wave number and derivatives";
   expect_derivatives(*f, beam.length);
   EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(gram(*f, beam.length)).info(), Eigen::Success);
   const auto one = family.functions(beam, 1);

@@ -20,6 +20,7 @@ inline SectionField field(int k) {
 /// Slopes are symmetric in their two coordinates, bilinear, finite, the same each time they are asked for, and turn
 /// with the body about its own axis. A kinematics without second order is not asked.
 inline void expect_strain_kinematics_conforms(const StrainKinematics& kinematics) {
+  EXPECT_EQ(find_fault(kinematics), "");
   EXPECT_FALSE(kinematics.name().empty());
   if (kinematics.order() == StrainOrder::linear) {
     EXPECT_FALSE(kinematics.complete());

@@ -1,6 +1,7 @@
 // Plugins that fail while a scene is built are reported at the place that names them.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cfenv>
 #include <cmath>
 #include <limits>
@@ -9,7 +10,6 @@
 #include "scene_fixture.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/core/plugin/sensor.hpp"
@@ -80,37 +80,6 @@ std::unique_ptr<Load> misbehaving(const Value&, const MakeContext&) {
   return std::make_unique<Misbehaving>(deed);
 }
 
-/// A slider on the curve y = sin x; told faults are in its H, its bias or its kernel.
-class OnSine final : public Hinge {
- public:
-  explicit OnSine(std::string fault) : fault_(std::move(fault)) {}
-  std::size_t coordinates() const override { return 1; }
-  std::size_t speeds() const override { return 1; }
-  void reference(std::span<double> x) const noexcept override { x[0] = 0; }
-  void motion(std::span<const double> x, std::span<const double> rates, HingeMotion& out) const noexcept override {
-    out.pose.R.setIdentity();
-    out.pose.p = Vector3(x[0], std::sin(x[0]), 0);
-    out.H.setZero(6, 1);
-    out.H(3, 0) = 1;
-    out.H(4, 0) = (fault_ == "H" ? 1.01 : 1) * std::cos(x[0]);
-    out.bias.setZero();
-    if (fault_ != "bias") out.bias[4] = -std::sin(x[0]) * rates[0] * rates[0];
-  }
-  void derivatives(std::span<const double>, std::span<const double> rates,
-                   std::span<double> x_dot) const noexcept override {
-    x_dot[0] = fault_ == "derivatives" ? 2 * rates[0] : rates[0];
-  }
-  void normalize(std::span<double>) const noexcept override {}
-  std::optional<HingeKernel> kernel() const override {
-    if (fault_ == "kernel") return HingeKernel{HingeKernel::Kind::prismatic, Vector3::UnitX()};
-    if (fault_ == "size") return HingeKernel{HingeKernel::Kind::free, Vector3::UnitX()};
-    return {};
-  }
-
- private:
-  std::string fault_;
-};
-
 /// A body with one mistake in what it says of its stations.
 class Misplaced final : public Body {
  public:
@@ -127,6 +96,15 @@ class Misplaced final : public Body {
   }
   std::string stations() const override { return "root"; }
   std::string measured_station() const override { return fault_ == "measured" ? "nose" : ""; }
+  std::vector<std::string> measured_beside() const override {
+    if (fault_ == "beside") return {"ear"};
+    return {};
+  }
+  std::span<const std::shared_ptr<const Body>> segments() const override {
+    static const std::array<std::shared_ptr<const Body>, 2> none;
+    if (fault_ == "segments") return none;
+    return {};
+  }
 
  private:
   std::string fault_;
@@ -258,13 +236,6 @@ class HostilePlugins : public SceneTest {
     add_load("throws-number", &misbehaving<Deed::throws_number>);
     add_load("throws-at-times", &misbehaving<Deed::throws_at_times>);
     add_load("begins-nowhere", &misbehaving<Deed::begins_nowhere>);
-    Plugin<Hinge> sine;
-    sine.id = "sine";
-    sine.parameters = {text("fault", "what is wrong with it").otherwise("nothing")};
-    sine.make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Hinge> {
-      return std::make_unique<OnSine>(p.text_at("fault"));
-    };
-    e.add(std::move(sine));
     const auto add_faulty = [&]<class Interface, class Faulty>(const char* id, std::type_identity<Interface>,
                                                                std::type_identity<Faulty>) {
       Plugin<Interface> plugin;
@@ -354,6 +325,9 @@ TEST_F(HostilePlugins, WhoseStationsThrowOrAreMissingAreReportedAtTheBody) {
   EXPECT_EQ(problem("type: misplaced, fault: throws"), who + "does not say what the body is: out of order");
   EXPECT_EQ(problem("type: misplaced, fault: measured"),
             who + "measures at a station that the body does not have, \"nose\"; need root");
+  EXPECT_EQ(problem("type: misplaced, fault: beside"),
+            who + "measures beside at a station that the body does not have, \"ear\"; need root");
+  EXPECT_EQ(problem("type: misplaced, fault: segments"), who + "made no segment 1 of 2");
   EXPECT_EQ(problems(replaced(with("type: misplaced, fault: throws-late"), "child: b", "child: b.side"), registry),
             who + "does not say what the body is: out of order");
 }
@@ -403,26 +377,6 @@ TEST_F(HostilePlugins, WhoseFunctionsAreNotAsTheySayAreReportedAtTheFamily) {
 TEST_F(HostilePlugins, WhoseLoadsBeginWhereThereIsNoNumberAreReportedAtTheLoad) {
   EXPECT_EQ(problems(with("type: lump") + "loads:\n  l: {type: begins-nowhere}\n", registry),
             "s.yaml:8:3: /loads/l: load 'l' has the simulation begin where a coordinate is nan");
-}
-
-TEST_F(HostilePlugins, WhoseHingesDoNotMoveAsTheySayAreReported) {
-  const auto hinge = [&](const std::string& fault) {
-    return problems(
-        "format: withy/1\ntime: {end: 1}\nbodies: {b: {type: lump}}\nhinges:\n  h: {type: sine, parent: "
-        "world, child: b, fault: " +
-            fault + "}\n",
-        registry);
-  };
-  const std::string made = "s.yaml:5:3: /hinges/h: hinge 'sine' made a motion that cannot be: ";
-  EXPECT_EQ(hinge("nothing"), "");
-  EXPECT_THAT(hinge("H"), testing::StartsWith(made + "column 1 of H is (0 0 0 1 1.01 0) in the axes of M"));
-  EXPECT_THAT(hinge("bias"), testing::StartsWith(made + "the bias is (0 0 0 0 0 0) in the axes of M"));
-  EXPECT_EQ(hinge("kernel"), made + "it does not move as the kernel that it says it is");
-  EXPECT_EQ(hinge("derivatives"), made +
-                                      "it has as many rates as coordinates, and the derivative of coordinate 1 is 2 "
-                                      "where rate 1 is 1; need rates that are the derivatives, or more coordinates, "
-                                      "as a quaternion has");
-  EXPECT_EQ(hinge("size"), made + "it has 1 coordinates and 1 rates, the kernel that it says it is has 7 and 6");
 }
 
 TEST_F(HostilePlugins, ThatMakeImpossibleBodiesAreReported) {

@@ -112,6 +112,57 @@ TEST(BadEnd, a_state_of_a_load_whose_rate_ceases_to_be_finite_is_named) {
               HasSubstr("the rate of 'memory.integral' is not finite at t = 0.5"));
 }
 
+/// A load that holds a number, and renews it to none.
+class BoundForgetting final : public BoundLoad, private DiscretePart {
+ public:
+  std::size_t scratch() const override { return 0; }
+  void add(double, std::span<const double>, std::span<const double>, std::span<double>,
+           std::span<double>) const noexcept override {}
+  std::vector<double> discontinuities() const override { return {}; }
+  double end() const override { return 0; }
+  void begin(State&) const override {}
+  const DiscretePart* discrete() const override { return this; }
+
+ private:
+  std::size_t states() const override { return 1; }
+  void renew(double, std::span<const double>, std::span<const double>, const Crossing&, std::span<double> d,
+             std::span<double>) const noexcept override {
+    d[0] = nan;
+  }
+  void add(double, std::span<const double>, std::span<double>) const noexcept override {}
+};
+
+class ForgettingLoad final : public Load {
+ public:
+  std::unique_ptr<BoundLoad> bind(const Model&) const override { return std::make_unique<BoundForgetting>(); }
+};
+
+TEST(BadEnd, a_load_that_holds_no_number_is_named) {
+  Model model = boom();
+  model.add_load("sound", TestLoad([](double) { return 1.0; }));
+  model.add_load("memory", ForgettingLoad());
+  const FunctionEquations equations = boom_equations(model, restoring);
+  State state = model.reference_state();
+  EXPECT_EQ(describe_nonfinite(model, equations, state, 0.1), "");
+  state.y[model.loads()[1].slot.first] = nan;
+  EXPECT_EQ(describe_nonfinite(model, equations, state, 0.1), "load 'memory' holds no number in its discrete states");
+}
+
+// Two coordinates, their two rates and the work.
+TEST(BadEnd, the_number_that_is_none_is_named_and_no_other) {
+  const Layout layout = boom().layout();
+  const auto told = [&](std::size_t at, double number) {
+    State state = boom_state(0.1, 0.2, 0.3, 0.4);
+    state.y[at] = number;
+    return nonfinite_number(layout, state);
+  };
+  EXPECT_EQ(told(0, 1), "");
+  EXPECT_EQ(told(0, nan), "the coordinate 'axle.0' is nan");
+  EXPECT_THAT(told(1, nan), HasSubstr("the coordinate 'boom."));
+  EXPECT_EQ(told(2, std::numeric_limits<double>::infinity()), "the speed 'axle.0' is inf");
+  EXPECT_EQ(told(4, nan), "the work is nan");
+}
+
 TEST(BadEnd, accelerations_that_are_not_finite_are_named) {
   const Model model = boom();
   const FunctionEquations equations = boom_equations(model, [](double, double, double) { return nan; });

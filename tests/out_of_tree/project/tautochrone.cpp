@@ -33,6 +33,7 @@ class Tautochrone final : public withy::Hinge {
   }
   void normalize(std::span<double>) const noexcept override {}              // no quaternion to scale
   std::optional<withy::HingeKernel> kernel() const override { return {}; }  // no motion that the sweeps know
+  std::optional<bool> angular(std::size_t) const override { return true; }  // θ is an angle, though nothing turns
 
  private:
   double radius_;  ///< of the rolling circle [m]

@@ -1,0 +1,60 @@
+/// \file
+/// Calls of an integrator's code, whatever it throws.
+#pragma once
+
+#include <exception>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/registry.hpp"
+
+namespace withy {
+
+/// The integrator of a simulation does what none may: no result can be trusted. what() says which in a sentence about
+/// "the integrator of this scene", whose plugin only the scene knows.
+class IntegratorError : public PluginError {
+ public:
+  /// \param deed the sentence without its subject: "does not step: out of order"
+  explicit IntegratorError(const std::string& deed) : PluginError("the integrator of this scene " + deed), deed_(deed) {}
+  [[nodiscard]] const std::string& deed() const { return deed_; }
+
+ private:
+  std::string deed_;
+};
+
+/// Calls `call`, a member of a stepper. It costs nothing where nothing is thrown.
+/// \param what it does not do: "does not step"
+/// \throws IntegratorError with the text of what it throws; PluginError and std::bad_alloc as they are
+template <class Call>
+decltype(auto) integrator_call(const char* what, Call&& call) {
+  try {
+    return call();
+  } catch (const PluginError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw IntegratorError(std::string(what) + ": " + e.what());
+  } catch (...) {
+    throw IntegratorError(std::string(what) + ": it throws what is no exception of C++");
+  }
+}
+
+/// A stepper that begins at `state`. \param who the integrator in words: "integrator 'mine'"
+/// \throws std::invalid_argument where the integrator cannot treat the equations, throws, gives no stepper or one that
+/// begins at another state, or says of itself that it is stable to no positive step; the text says which. PluginError,
+/// std::bad_alloc.
+std::unique_ptr<Stepper> start_stepper(const Integrator& integrator, const EquationsOfMotion& equations,
+                                       const State& state, const std::string& who = "the integrator");
+
+/// Stepper::interpolate. \throws IntegratorError
+void interpolate_step(const Stepper& stepper, double t, std::span<double> y);
+
+/// Stepper::remarks. \throws IntegratorError
+std::vector<std::string> remarks_of(const Stepper& stepper);
+
+}  // namespace withy

@@ -1,0 +1,50 @@
+/// \file
+/// Whether loads are right about their own derivatives.
+#pragma once
+
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
+
+#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/registry.hpp"
+
+namespace withy {
+
+/// Calls an add_derivatives of a load. \returns what that does
+/// \throws PluginError that names the load, with the text of what the call throws; std::bad_alloc
+template <class Call>
+bool derivatives_call(const std::string& load, Call&& call) {
+  const std::string who = "load '" + load + "' does not say its derivatives: ";
+  try {
+    return call();
+  } catch (const PluginError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw PluginError(who + e.what());
+  } catch (...) {
+    throw PluginError(who + "it throws what is no exception of C++");
+  }
+}
+
+/// A load that is wrong about its derivatives.
+struct FalseDerivative {
+  std::size_t load = 0;  ///< index in Model::loads()
+  std::string what;      ///< "load 'spring' says that …", without a full stop
+};
+
+/// Compares what BoundLoad::add_derivatives and ContinuousPart::add_derivatives say with differences of what the load
+/// gives, along one direction each of displacements, speeds and states of the load, at two states beside this one. Told
+/// is what is wrong by more than a millionth at both: at a kink there is no derivative to be right about. What an
+/// add_derivatives throws is told likewise. Nothing where all are right.
+/// \param state with the discrete states of a run
+std::optional<FalseDerivative> false_derivative(const Model& model, const State& state);
+
+/// Moves y by δ, one number a speed: x changes as if the speeds were δ for a unit of time, to the first order; then
+/// quaternions are scaled to unit length. \param delta displacements [rad, m, 1]
+void displace(const Model& model, std::span<double> y, std::span<const double> delta);
+
+}  // namespace withy

@@ -1,0 +1,107 @@
+// Loads that are wrong about themselves while a scene is built are reported at the place that names them.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "scene_fixture.hpp"
+#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/load.hpp"
+
+namespace withy::test {
+namespace {
+
+constexpr std::size_t never_set = std::size_t{1} << 60U;
+
+/// Does nothing, and says one thing wrongly of it.
+class BoundBoaster final : public BoundLoad, private DiscretePart {
+ public:
+  explicit BoundBoaster(std::string fault) : fault_(std::move(fault)) {}
+  std::size_t scratch() const override { return fault_ == "scratch" ? never_set : 0; }
+  void add(double, std::span<const double>, std::span<const double>, std::span<double>,
+           std::span<double>) const noexcept override {}
+  std::vector<double> discontinuities() const override { return {}; }
+  double end() const override { return 0; }
+  void begin(State& state) const override {
+    if (fault_ == "fewer") state.y.resize(1);
+    if (fault_ == "more") state.y.push_back(0);
+    if (fault_ == "late") state.time = 7;
+  }
+  const DiscretePart* discrete() const override { return this; }
+
+ private:
+  std::size_t states() const override { return fault_ == "states" ? never_set : 1; }
+  std::size_t switches() const override { return fault_ == "switches" ? never_set : 0; }
+  double period() const override {
+    if (fault_ == "throws") throw std::runtime_error("no clock");
+    if (fault_ == "backwards") return -1;
+    if (fault_ == "never") return std::numeric_limits<double>::infinity();
+    return fault_ == "nan" ? std::nan("") : 0.1;
+  }
+  void renew(double, std::span<const double>, std::span<const double>, const Crossing&, std::span<double>,
+             std::span<double>) const noexcept override {}
+  void add(double, std::span<const double>, std::span<double>) const noexcept override {}
+
+  std::string fault_;
+};
+
+class Boaster final : public Load {
+ public:
+  explicit Boaster(std::string fault) : fault_(std::move(fault)) {}
+  std::unique_ptr<BoundLoad> bind(const Model&) const override { return std::make_unique<BoundBoaster>(fault_); }
+
+ private:
+  std::string fault_;
+};
+
+class HostileLoads : public SceneTest {
+ protected:
+  HostileLoads() {
+    Plugin<Load> plugin;
+    plugin.id = "boaster";
+    plugin.parameters = {text("fault", "what is wrong with it").otherwise("nothing")};
+    plugin.make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Load> {
+      return std::make_unique<Boaster>(p.text_at("fault"));
+    };
+    Enrollment e;
+    e.add(std::move(plugin));
+    registry.admit(std::move(e), "test");
+  }
+  std::string load(const std::string& fault) {
+    return problems(
+        "format: withy/1\ntime: {end: 1}\nbodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\nhinges: "
+        "{h: {type: free, parent: world, child: b}}\nloads:\n  l: {type: boaster, fault: " +
+            fault + "}\n",
+        registry);
+  }
+};
+
+const std::string who = "s.yaml:6:3: /loads/l: load 'l' ";
+
+TEST_F(HostileLoads, WhoseClocksHaveNoPeriodAreReported) {
+  const std::string need = " s; need a finite period, or 0 where no clock renews it";
+  EXPECT_EQ(load("nothing"), "");
+  EXPECT_EQ(load("backwards"), who + "is renewed every -1" + need);
+  EXPECT_EQ(load("never"), who + "is renewed every inf" + need);
+  EXPECT_EQ(load("nan"), who + "is renewed every nan" + need);
+  EXPECT_EQ(load("throws"), who + "does not say what it keeps: no clock");
+}
+
+TEST_F(HostileLoads, ThatSayToHaveMoreNumbersThanAnyMemoryAreReported) {
+  const std::string says = who + "says that it has 1152921504606846976 ", most = "; 4294967296 are the most";
+  EXPECT_EQ(load("scratch"), says + "numbers of scratch space" + most);
+  EXPECT_EQ(load("states"), says + "discrete states" + most);
+  EXPECT_EQ(load("switches"), says + "switching functions" + most);
+}
+
+// A free hinge has 7 coordinates and 6 rates; behind them are the load's state, whether it is that of a run, and the
+// work.
+TEST_F(HostileLoads, ThatBeginWithAnotherStateAreReported) {
+  EXPECT_EQ(load("fewer"), who + "does not begin: it leaves 1 numbers in the state where there are 16");
+  EXPECT_EQ(load("more"), who + "does not begin: it leaves 17 numbers in the state where there are 16");
+  EXPECT_EQ(load("late"), who + "does not begin: it sets the time to 7 s, which the scene says ('initial')");
+}
+
+}  // namespace
+}  // namespace withy::test
