@@ -15,9 +15,8 @@ namespace withy::study {
 namespace {
 
 bool has_foreign_laws(const Model& model) {
-  return std::any_of(model.loads().begin(), model.loads().end(), [](const LoadNode& node) {
-    return dynamic_cast<const ForeignLaw*>(node.load.get()) != nullptr;
-  });
+  return std::any_of(model.loads().begin(), model.loads().end(),
+                     [](const LoadNode& node) { return dynamic_cast<const ForeignLaw*>(node.load.get()) != nullptr; });
 }
 
 /// With the discrete states of a run. \throws SceneError where there is no run: a clock is too fast for the time
@@ -51,8 +50,8 @@ std::string discrete_fault(const LoadNode& node, const Layout& layout, const Sta
   part.switching(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), held, values);
   const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return std::isnan(v); });
   if (bad == values.end()) return {};
-  return fmt::format("load '{}' switches where functions are zero, and number {} of them has no value at {} s", node.name,
-                     bad - values.begin(), state.time);
+  return fmt::format("load '{}' switches where functions are zero, and number {} of them has no value at {} s",
+                     node.name, bad - values.begin(), state.time);
 }
 
 }  // namespace

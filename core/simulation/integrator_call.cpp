@@ -27,9 +27,9 @@ std::unique_ptr<Stepper> start_stepper(const Integrator& integrator, const Equat
   if (stepper == nullptr) throw std::invalid_argument(who + " cannot begin and does not say why");
   const State& begun = stepper->state();
   if (begun.y.size() != state.y.size() || begun.time != state.time)
-    throw std::invalid_argument(who + " begins at another state: t = " + brief(begun.time) + " s and " +
-                                std::to_string(begun.y.size()) + " numbers, where it was given t = " +
-                                brief(state.time) + " s and " + std::to_string(state.y.size()));
+    throw std::invalid_argument(
+        who + " begins at another state: t = " + brief(begun.time) + " s and " + std::to_string(begun.y.size()) +
+        " numbers, where it was given t = " + brief(state.time) + " s and " + std::to_string(state.y.size()));
   return stepper;
 }
 

@@ -19,7 +19,8 @@ namespace withy {
 class IntegratorError : public PluginError {
  public:
   /// \param deed the sentence without its subject: "does not step: out of order"
-  explicit IntegratorError(const std::string& deed) : PluginError("the integrator of this scene " + deed), deed_(deed) {}
+  explicit IntegratorError(const std::string& deed)
+      : PluginError("the integrator of this scene " + deed), deed_(deed) {}
   [[nodiscard]] const std::string& deed() const { return deed_; }
 
  private:

@@ -89,8 +89,7 @@ Eigen::VectorXd mixed_direction(Eigen::Index size) {
   return v;
 }
 
-void move_state(const Model& model, const Told& told, Variable by, const Eigen::VectorXd& change,
-                std::span<double> y) {
+void move_state(const Model& model, const Told& told, Variable by, const Eigen::VectorXd& change, std::span<double> y) {
   const std::span<const double> by_number(change.data(), static_cast<std::size_t>(change.size()));
   if (by == displacement) return displace(model, y, by_number);
   const std::size_t first = by == speed ? model.layout().positions : told.first_state;
@@ -120,12 +119,12 @@ Comparison compare_slopes(const Model& model, const Told& told, Variable by, con
       },
       analysis::difference_step, 8);
   Comparison c{{}, told.slopes[by] * direction, found.slope};
-  const Eigen::ArrayXd terms =
-      (told.slopes[by].cwiseAbs() * direction.cwiseAbs()).array() + c.found.array().abs();
+  const Eigen::ArrayXd terms = (told.slopes[by].cwiseAbs() * direction.cwiseAbs()).array() + c.found.array().abs();
   const Eigen::ArrayXd allowed = tolerance * terms + 10 * found.change.array() + rounding * sizes / shortest;
   const Eigen::ArrayXd off = (c.said - c.found).array().abs();
   // What differences do not tell says nothing; what is said to be no number is wrong where they do.
-  c.wrong = c.found.array().isFinite() && found.change.array().isFinite() && (off > allowed || !c.said.array().isFinite());
+  c.wrong =
+      c.found.array().isFinite() && found.change.array().isFinite() && (off > allowed || !c.said.array().isFinite());
   return c;
 }
 
@@ -203,14 +202,16 @@ void displace(const Model& model, std::span<double> y, std::span<const double> d
 }
 
 std::optional<FalseDerivative> false_derivative(const Model& model, const State& state) {
+  constexpr std::size_t most_speeds = 200;  // a matrix of theirs is made for each load
+  if (model.layout().speeds > most_speeds) return {};
   const std::array<std::vector<double>, 2> places = {state_beside(model, state, 1.7e-3),
                                                      state_beside(model, state, -2.9e-3)};
   for (std::size_t l = 0; l < model.loads().size(); ++l) {
     const LoadNode& node = model.loads()[l];
     try {
       for (const auto& told : {&told_by_load, &told_by_states})
-        if (const auto wrong = wrong_slope(
-                model, places, [&](std::span<const double> y) { return told(model, node, state.time, y); }))
+        if (const auto wrong =
+                wrong_slope(model, places, [&](std::span<const double> y) { return told(model, node, state.time, y); }))
           return FalseDerivative{l, in_words(model, node, *wrong)};
     } catch (const PluginError& e) {
       return FalseDerivative{l, e.what()};

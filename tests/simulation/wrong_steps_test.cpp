@@ -114,10 +114,18 @@ class Losing final : public OwnState {
   }
 };
 
+/// Stays where it is when it is sent elsewhere.
+class Stubborn final : public WrappedSteps {
+ public:
+  using WrappedSteps::WrappedSteps;
+  void jump(const State& /*state*/) override {}
+};
+
 /// A pendulum at an angle, run by these steps to 1 s.
+/// \param rest of its scene
 template <class Steps>
-RunSummary run_by() {
-  Made made(pendulum);
+RunSummary run_by(const std::string& rest = {}) {
+  Made made(pendulum + rest);
   made.scene.integrator = std::make_shared<WrappedIntegrator<Steps>>(made.scene.integrator);
   RunOptions options;
   options.end = 1;
@@ -126,9 +134,9 @@ RunSummary run_by() {
 }
 
 template <class Steps>
-std::string message_of_a_run() {
+std::string message_of_a_run(const std::string& rest = {}) {
   try {
-    run_by<Steps>();
+    run_by<Steps>(rest);
   } catch (const PluginError& e) {
     return e.what();
   }
@@ -181,6 +189,12 @@ TEST(WrongSteps, OfAnOutcomeThatThereIsNotOrAnotherCountOfNumbersEndARun) {
                                                                 "not, 99"));
   // Angle, rate and work.
   EXPECT_THAT(message_of_a_run<Shrinking>(), testing::HasSubstr("it leaves 1 numbers in the state where 3 are due"));
+}
+
+TEST(WrongSteps, ThatDoNotGoWhereAnEventSendsThemEndARun) {
+  EXPECT_THAT(
+      message_of_a_run<Stubborn>("initial: {hinges: {r: {rate: [1]}}}\nevents: {e: {at: 0.5, do: {lock: r}}}\n"),
+      testing::HasSubstr("does not go to another state: it was sent to one at 0.5"));
 }
 
 TEST(WrongSteps, ThatBlameABodyThatThereIsNotNameNone) {
