@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
@@ -100,8 +101,10 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
                             summary.steps.evaluations));
   line("CPU time", fmt::format("{:.4g} s", summary.cpu_seconds));
   if (summary.conditioning.condition > 0) {
-    line("mass matrix at the end", fmt::format("condition {:.3g}, determinant {}", summary.conditioning.condition,
-                                               name_of_sign(summary.conditioning.determinant_sign)));
+    line("mass matrix at the end",
+         fmt::format("condition {:.3g}, determinant {}{}", summary.conditioning.condition,
+                     name_of_sign(summary.conditioning.determinant_sign),
+                     loops_of(model).empty() ? "" : ": of the tree, as if its loops were open"));
   }
   std::size_t width = 23;  // that of the certificate below
   for (const auto& [what, text] : lines) width = std::max(width, what.size());

@@ -46,6 +46,7 @@ std::string discrete_fault(const LoadNode& node, const Layout& layout, const Sta
   if (std::any_of(held.begin(), held.end(), [](double d) { return std::isnan(d); }))
     return fmt::format("load '{}' begins with no number in its discrete states", node.name);
   const DiscretePart& part = *node.load->discrete();
+  if (part.switches() == 0) return {};
   std::vector<double> values(part.switches());
   part.switching(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), held, values);
   const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return std::isnan(v); });

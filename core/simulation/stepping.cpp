@@ -210,7 +210,7 @@ void Stepping::check_step(double from, double limit) const {
 /// Whether step after step gains less than time resolves where it is to come to: none of them is an error, and all
 /// together come nowhere.
 bool Stepping::crawls(double from, double limit) {
-  constexpr int many = 10'000;
+  constexpr int many = 1 << 20;  // who looks at the pace knows more by then
   const double there = std::isfinite(limit) ? std::max(std::abs(from), std::abs(limit)) : std::abs(from);
   const bool below = state().time - from < std::numeric_limits<double>::epsilon() * there;
   steps_below_resolution_ = below ? steps_below_resolution_ + 1 : 0;
