@@ -75,6 +75,15 @@ class TreeBuilder {
     }
   }
 
+  void take_reflected_inertia(const Value& value, HingeNode& node) {
+    const Value* reflected = value.find("reflected_inertia");
+    if (reflected == nullptr || node.hinge == nullptr) return;
+    node.reflected_inertia = reflected->number();
+    if (node.hinge->speeds() != 1 || node.hinge->coordinates() != 1)
+      problems_.error(*reflected, fmt::format("only hinges of one rate have a reflected inertia, and this one has {}",
+                                              node.hinge->speeds()));
+  }
+
   void add_hinge(const std::string& name, const Value& given) {
     problems_.check_name(name, given);
     tree_.names.hinges.add(name);
@@ -132,12 +141,7 @@ class TreeBuilder {
       for (std::size_t i = 0; i < rates.size(); ++i)
         if (!rates[i].angular) tree_.names.sliding.add(fmt::format("{}.{}", name, i));
     }
-    if (const Value* reflected = value->find("reflected_inertia"); reflected != nullptr && node.hinge != nullptr) {
-      node.reflected_inertia = reflected->number();
-      if (node.hinge->speeds() != 1 || node.hinge->coordinates() != 1)
-        problems_.error(*reflected, fmt::format("only hinges of one rate have a reflected inertia, and this one has {}",
-                                                node.hinge->speeds()));
-    }
+    take_reflected_inertia(*value, node);
     hinge_nodes_.push_back(std::move(node));
     hinge_values_.emplace_back(name, std::move(made.value));
   }
