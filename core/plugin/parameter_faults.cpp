@@ -91,13 +91,15 @@ std::string spec_fault(const ParameterSpec& spec) {
 }
 
 std::string faults_within(const std::vector<ParameterSpec>& parameters, const std::string& path) {
+  // With every start of a program: no text is made where nothing is wrong.
   for (auto spec = parameters.begin(); spec != parameters.end(); ++spec) {
-    const std::string name = path + spec->key;
-    if (spec->key.empty()) return "parameter '" + name + "' has no key";
+    const auto named = [&](const std::string& fault) { return "parameter '" + path + spec->key + "' " + fault; };
+    if (spec->key.empty()) return named("has no key");
     if (std::any_of(parameters.begin(), spec, [&](const ParameterSpec& other) { return other.key == spec->key; }))
-      return "parameter '" + name + "' stands twice";
-    if (const std::string fault = spec_fault(*spec); !fault.empty()) return "parameter '" + name + "' " + fault;
-    if (std::string fault = faults_within(spec->members, name + "."); !fault.empty()) return fault;
+      return named("stands twice");
+    if (const std::string fault = spec_fault(*spec); !fault.empty()) return named(fault);
+    if (spec->members.empty()) continue;
+    if (std::string fault = faults_within(spec->members, path + spec->key + "."); !fault.empty()) return fault;
   }
   return {};
 }
