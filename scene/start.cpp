@@ -7,7 +7,7 @@
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
-#include "withy/core/model/plugin_call.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 #include "withy/scene/constraints.hpp"
 #include "withy/scene/state.hpp"
 

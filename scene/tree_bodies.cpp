@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "withy/core/model/columns.hpp"
-#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/measured_place.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/state.hpp"

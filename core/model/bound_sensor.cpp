@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "withy/core/model/model.hpp"
-#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/model/validate.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 
 namespace withy {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "withy/core/model/model.hpp"
-#include "withy/core/model/plugin_call.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 
 namespace withy {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "withy/core/model/model.hpp"
-#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/plugin/kinks.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 
 namespace withy {
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "withy/core/model/plugin_call.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
@@ -34,11 +34,11 @@ std::unique_ptr<Stepper> start_stepper(const Integrator& integrator, const Equat
 }
 
 void interpolate_step(const Stepper& stepper, double t, std::span<double> y) {
-  integrator_call("does not interpolate within its steps", [&] { stepper.interpolate(t, y); });
+  plugin_call<IntegratorError>("does not interpolate within its steps", [&] { stepper.interpolate(t, y); });
 }
 
 std::vector<std::string> remarks_of(const Stepper& stepper) {
-  return integrator_call("does not say how it has integrated", [&] { return stepper.remarks(); });
+  return plugin_call<IntegratorError>("does not say how it has integrated", [&] { return stepper.remarks(); });
 }
 
 }  // namespace withy

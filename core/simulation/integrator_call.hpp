@@ -2,15 +2,13 @@
 /// Calls of an integrator's code, whatever it throws.
 #pragma once
 
-#include <exception>
 #include <memory>
-#include <new>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "withy/core/plugin/integrator.hpp"
-#include "withy/core/plugin/registry.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 
 namespace withy {
 
@@ -26,24 +24,6 @@ class IntegratorError : public PluginError {
  private:
   std::string deed_;
 };
-
-/// Calls `call`, a member of a stepper. It costs nothing where nothing is thrown.
-/// \param what it does not do: "does not step"
-/// \throws IntegratorError with the text of what it throws; PluginError and std::bad_alloc as they are
-template <class Call>
-decltype(auto) integrator_call(const char* what, Call&& call) {
-  try {
-    return call();
-  } catch (const PluginError&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw IntegratorError(std::string(what) + ": " + e.what());
-  } catch (...) {
-    throw IntegratorError(std::string(what) + ": it throws what is no exception of C++");
-  }
-}
 
 /// A stepper that begins at `state`. \param who the integrator in words: "integrator 'mine'"
 /// \throws std::invalid_argument where the integrator cannot treat the equations, throws, gives no stepper or one that

@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/given_steps.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/same_instant.hpp"
@@ -72,7 +72,7 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
     }
     if (!jumps) continue;
     observer_->landed(state());
-    integrator_call("does not begin anew", [&] { stepper_->restart(); });
+    plugin_call<IntegratorError>("does not begin anew", [&] { stepper_->restart(); });
     observer_->restarted();
   }
   return ended_;
@@ -185,7 +185,7 @@ bool Stepping::renew_clocks() {
 void Stepping::step_to(double limit) {
   const double from = state().time;
   const std::size_t made = stepper_->statistics().evaluations;
-  ended_.step = integrator_call("does not step", [&] { return stepper_->step(limit); });
+  ended_.step = plugin_call<IntegratorError>("does not step", [&] { return stepper_->step(limit); });
   step_evaluations_ += stepper_->statistics().evaluations - made;
   check_step(from, limit);
   if (ended_.step.outcome == StepResult::Outcome::ok && crawls(from, limit))
@@ -218,7 +218,7 @@ bool Stepping::crawls(double from, double limit) {
 }
 
 void Stepping::jump_to(const State& state) {
-  integrator_call("does not go to another state", [&] { stepper_->jump(state); });
+  plugin_call<IntegratorError>("does not go to another state", [&] { stepper_->jump(state); });
   const State& here = stepper_->state();
   // A stepper may scale quaternions to unit length.
   const auto close = [](double a, double b) {
@@ -371,7 +371,7 @@ void Stepping::resume(const State& state, std::span<const double> memory) {
 }
 
 std::vector<double> Stepping::stepper_memory() const {
-  return integrator_call("does not say what it remembers", [&] { return stepper_->memory(); });
+  return plugin_call<IntegratorError>("does not say what it remembers", [&] { return stepper_->memory(); });
 }
 
 void Stepping::remember(Memory& memory) {

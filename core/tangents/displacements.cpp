@@ -1,10 +1,28 @@
+#include "withy/core/tangents/displacements.hpp"
+
 #include <Eigen/QR>
+#include <vector>
 
 #include "withy/core/plugin/central_difference.hpp"
-#include "withy/core/tangents/load_derivatives.hpp"
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
 namespace withy {
+
+void displace(const Model& model, std::span<double> y, std::span<const double> delta) {
+  const Layout& layout = model.layout();
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    const Slot& slot = layout.hinges[h];
+    const Hinge& hinge = *model.hinges()[h].hinge;
+    const auto x = y.subspan(slot.position, slot.positions);
+    std::vector<double> change(slot.positions);
+    hinge.derivatives(x, delta.subspan(slot.speed, slot.speeds), change);
+    for (std::size_t i = 0; i < slot.positions; ++i) x[i] += change[i];
+    hinge.normalize(x);
+  }
+  for (const Slot& slot : layout.bodies) {
+    for (std::size_t i = 0; i < slot.positions; ++i) y[slot.position + i] += delta[slot.speed + i];
+  }
+}
 
 void TangentDynamics::displace(std::span<double> y, const Eigen::VectorXd& delta) const {
   withy::displace(*model_, y, {delta.data(), model_->layout().speeds});

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "withy/core/tangents/displacements.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
 #include "withy/core/tangents/refined_difference.hpp"
 
@@ -184,22 +185,6 @@ std::vector<double> state_beside(const Model& model, const State& state, double 
 }
 
 }  // namespace
-
-void displace(const Model& model, std::span<double> y, std::span<const double> delta) {
-  const Layout& layout = model.layout();
-  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
-    const Slot& slot = layout.hinges[h];
-    const Hinge& hinge = *model.hinges()[h].hinge;
-    const auto x = y.subspan(slot.position, slot.positions);
-    std::vector<double> change(slot.positions);
-    hinge.derivatives(x, delta.subspan(slot.speed, slot.speeds), change);
-    for (std::size_t i = 0; i < slot.positions; ++i) x[i] += change[i];
-    hinge.normalize(x);
-  }
-  for (const Slot& slot : layout.bodies) {
-    for (std::size_t i = 0; i < slot.positions; ++i) y[slot.position + i] += delta[slot.speed + i];
-  }
-}
 
 std::optional<FalseDerivative> false_derivative(const Model& model, const State& state) {
   constexpr std::size_t most_speeds = 200;  // a matrix of theirs is made for each load

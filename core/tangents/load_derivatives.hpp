@@ -2,13 +2,12 @@
 /// Whether loads are right about their own derivatives.
 #pragma once
 
-#include <exception>
-#include <new>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "withy/core/model/model.hpp"
-#include "withy/core/plugin/registry.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 
 namespace withy {
 
@@ -16,18 +15,7 @@ namespace withy {
 /// \throws PluginError that names the load, with the text of what the call throws; std::bad_alloc
 template <class Call>
 bool derivatives_call(const std::string& load, Call&& call) {
-  const std::string who = "load '" + load + "' does not say its derivatives: ";
-  try {
-    return call();
-  } catch (const PluginError&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw PluginError(who + e.what());
-  } catch (...) {
-    throw PluginError(who + "it throws what is no exception of C++");
-  }
+  return plugin_call<PluginError>("load '" + load + "' does not say its derivatives", std::forward<Call>(call));
 }
 
 /// A load that is wrong about its derivatives.
@@ -42,9 +30,5 @@ struct FalseDerivative {
 /// add_derivatives throws is told likewise. Nothing where all are right, and of more than 200 speeds.
 /// \param state with the discrete states of a run
 std::optional<FalseDerivative> false_derivative(const Model& model, const State& state);
-
-/// Moves y by δ, one number a speed: x changes as if the speeds were δ for a unit of time, to the first order; then
-/// quaternions are scaled to unit length. \param delta displacements [rad, m, 1]
-void displace(const Model& model, std::span<double> y, std::span<const double> delta);
 
 }  // namespace withy

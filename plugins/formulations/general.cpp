@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "formulation_plugin.hpp"
-#include "withy/core/model/plugin_call.hpp"
 #include "withy/core/plugin/default_values.hpp"
+#include "withy/core/plugin/plugin_call.hpp"
 #include "withy/core/plugin/strain_kinematics.hpp"
 
 namespace withy {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
+#include "faulty_plugin.hpp"
 #include "scene_fixture.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/formulation.hpp"
@@ -127,19 +127,9 @@ class HostileMotions : public SceneTest {
  protected:
   HostileMotions() {
     Enrollment e;
-    const auto add_faulty = [&]<class Interface, class Faulty>(const char* id, std::type_identity<Interface>,
-                                                               std::type_identity<Faulty>) {
-      Plugin<Interface> plugin;
-      plugin.id = id;
-      plugin.parameters = {text("fault", "what is wrong with it").otherwise("nothing")};
-      plugin.make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Interface> {
-        return std::make_unique<Faulty>(p.text_at("fault"));
-      };
-      e.add(std::move(plugin));
-    };
-    add_faulty("sine", std::type_identity<Hinge>{}, std::type_identity<OnSine>{});
-    add_faulty("wave", std::type_identity<Motion>{}, std::type_identity<Wave>{});
-    add_faulty("mute", std::type_identity<Formulation>{}, std::type_identity<Mute>{});
+    e.add(faulty_plugin<Hinge, OnSine>("sine"));
+    e.add(faulty_plugin<Motion, Wave>("wave"));
+    e.add(faulty_plugin<Formulation, Mute>("mute"));
     const auto add_kinematics = [&](const char* id, ParameterSpec share, auto make) {
       Plugin<StrainKinematics> plugin;
       plugin.id = id;

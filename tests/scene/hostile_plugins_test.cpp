@@ -5,8 +5,8 @@
 #include <cfenv>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
+#include "faulty_plugin.hpp"
 #include "scene_fixture.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/body.hpp"
@@ -236,19 +236,9 @@ class HostilePlugins : public SceneTest {
     add_load("throws-number", &misbehaving<Deed::throws_number>);
     add_load("throws-at-times", &misbehaving<Deed::throws_at_times>);
     add_load("begins-nowhere", &misbehaving<Deed::begins_nowhere>);
-    const auto add_faulty = [&]<class Interface, class Faulty>(const char* id, std::type_identity<Interface>,
-                                                               std::type_identity<Faulty>) {
-      Plugin<Interface> plugin;
-      plugin.id = id;
-      plugin.parameters = {text("fault", "what is wrong with it").otherwise("nothing")};
-      plugin.make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Interface> {
-        return std::make_unique<Faulty>(p.text_at("fault"));
-      };
-      e.add(std::move(plugin));
-    };
-    add_faulty("misplaced", std::type_identity<Body>{}, std::type_identity<Misplaced>{});
-    add_faulty("mistaken", std::type_identity<Sensor>{}, std::type_identity<Mistaken>{});
-    add_faulty("parabola", std::type_identity<ModeFamily>{}, std::type_identity<Parabola>{});
+    e.add(faulty_plugin<Body, Misplaced>("misplaced"));
+    e.add(faulty_plugin<Sensor, Mistaken>("mistaken"));
+    e.add(faulty_plugin<ModeFamily, Parabola>("parabola"));
     Plugin<Load> elsewhere;
     elsewhere.id = "elsewhere";
     elsewhere.parameters = {number("body", "1", "index"), number("frame", "1", "index")};
