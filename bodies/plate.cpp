@@ -98,7 +98,7 @@ class Plate final : public Body {
   }
 
  private:
-  /// Of "(x, y)" [m]; nothing where that is no place on the plate.
+  /// Of "(x, y)" or, where a comma would end the name, "(x; y)" [m]; nothing where that is no place on the plate.
   std::optional<std::pair<double, double>> place_of(std::string_view text) const {
     const auto number = [](std::string_view word) {
       word.remove_prefix(std::min(word.find_first_not_of(' '), word.size()));
@@ -106,7 +106,7 @@ class Plate final : public Body {
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
       return error == std::errc() && end == word.data() + word.size() ? value : std::nan("");
     };
-    const std::size_t comma = text.find(',');
+    const std::size_t comma = text.find_first_of(",;");
     if (comma == std::string_view::npos || !text.starts_with('(') || !text.ends_with(')')) return {};
     const double x = number(text.substr(1, comma - 1)), y = number(text.substr(comma + 1, text.size() - comma - 2));
     if (!(x >= 0 && x <= sheet_.length && std::abs(y) <= sheet_.width / 2)) return {};

@@ -193,6 +193,12 @@ void TuneSearch::report(const MatchedRun& start) {
   count_agreeing();
 }
 
+/// Relative changes of a value for one of its coordinate: of the value there, or of its scale where that is 0.
+double relative_slope(const TunedValue& t, double z) {
+  const double value = t.value(z);
+  return t.slope(z) / (value != 0 ? value : t.scale);
+}
+
 /// Values with the digits that a scene is written with.
 void TuneSearch::add_parameters() {
   constexpr double near = 1e-3;
@@ -205,7 +211,9 @@ void TuneSearch::add_parameters() {
     for (const Undetermined& u : undetermined_) {
       if (u.coordinate != i) continue;
       fitted.state = FittedValue::State::undetermined;
-      fitted.same_as = u.same_as;
+      for (const auto& [other, change] : u.same_as)
+        fitted.same_as.emplace_back(
+            other, change * relative_slope(m_.tuned[other], z_[static_cast<Index>(other)]) / relative_slope(t, z));
     }
     result_.parameters.push_back(std::move(fitted));
   }

@@ -38,8 +38,8 @@ struct FittedValue {
   State state = State::fitted;
   double value = 0;                 ///< in the unit of `tuned`
   std::optional<double> deviation;  ///< standard deviation in that unit; of fitted ones
-  /// Of undetermined ones: parameters whose relative change by the factor has the effect of a change of this one by 1
-  /// (of those without logarithmic coordinate in units of their scale); none: it has no effect on the data.
+  /// Of undetermined ones: parameters whose relative change by the factor has the effect of a relative change of this
+  /// one by 1, both of the values found (of one that is 0, of its scale); none: it has no effect on the data.
   std::vector<std::pair<std::size_t, double>> same_as;
 };
 

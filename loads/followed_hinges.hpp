@@ -174,10 +174,10 @@ inline double end_of(const std::vector<FollowedAxis>& axes) {
   return end;
 }
 
-/// Puts the state on the trajectories as they are at time 0.
+/// Puts the state on the trajectories as they are at its time.
 inline void begin_on(const std::vector<FollowedAxis>& axes, std::size_t positions, State& state) {
   for (const FollowedAxis& axis : axes) {
-    const MotionPoint start = at(axis.trajectory, 0);
+    const MotionPoint start = at(axis.trajectory, state.time);
     state.y[axis.position] = start.position;
     state.y[positions + axis.speed] = start.rate;
   }

@@ -29,7 +29,9 @@ std::string column_name(const std::string& column) {
   for (const char c : column) {
     if (c == '[')
       name += '.';
-    else if (c != ']')
+    else if (c == ',')
+      name += ';';
+    else if (c != ']' && !(c == ' ' && name.ends_with(';')))
       name += c;
   }
   return name;

@@ -13,8 +13,8 @@ namespace withy {
 
 /// One line of a CSV file, its end included: shortest numbers that read back the same; nothing where one is not finite.
 std::string csv_line(std::span<const double> numbers);
-/// The name of a column in tables, where brackets hold units alone: `boom.bending_y.2.rate` for
-/// `boom.bending_y[2].rate`.
+/// The name of a column in tables, where brackets hold units alone and commas stand between cells:
+/// `boom.bending_y.2.rate` for `boom.bending_y[2].rate`, `panel.(0.6;-0.2).x` for `panel.(0.6, -0.2).x`.
 std::string column_name(const std::string& column);
 /// A cell with any text: in quotes where it would be read as something else.
 std::string csv_text(const std::string& text);

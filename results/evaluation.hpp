@@ -16,6 +16,7 @@ struct Evaluated {
   std::string problem;  ///< why there are no accelerations; empty where there are
 };
 
+/// \param state what its loads hold and remember need not have begun: it begins as that of a run does
 Evaluated evaluate(const study::Prepared& prepared, const State& state);
 
 }  // namespace withy

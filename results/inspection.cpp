@@ -14,6 +14,7 @@
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/instants.hpp"
 #include "withy/results/certificate_json.hpp"
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/json_text.hpp"
@@ -149,9 +150,10 @@ Json mass_matrix_json(const study::Prepared& prepared, const State& state) {
 
 }  // namespace
 
-Json inspection_json(const study::Prepared& prepared, const State& state, Registry& registry,
+Json inspection_json(const study::Prepared& prepared, const State& given, Registry& registry,
                      const std::vector<LoadedPlugin>& plugins) {
   const Scene& scene = prepared.scene;
+  const State state = begun(prepared.model(), *prepared.equations, given);
   Json j;
   j["scene"] = scene.file;
   j["name"] = scene.name;

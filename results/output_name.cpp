@@ -19,6 +19,20 @@ void keep_inputs(const fs::path& out, const std::vector<fs::path>& read) {
                               " by this command and is not replaced; name another file");
 }
 
+void keep_inputs_in(const fs::path& folder, const std::vector<std::string>& names, const std::vector<fs::path>& read) {
+  std::error_code ignored;
+  for (const std::string& name : names) {
+    const fs::path out = folder / name;
+    keep_inputs(out, read);
+    if (!fs::is_directory(out, ignored)) continue;
+    for (const fs::path& file : read)
+      for (fs::path above = fs::weakly_canonical(file, ignored); above.has_relative_path(); above = above.parent_path())
+        if (fs::equivalent(above, out, ignored))
+          throw study::InputError(file.string() + " is read by this command, and " + out.string() +
+                                  " is to be replaced; name another folder");
+  }
+}
+
 std::string output_name(const std::string& given, const fs::path& otherwise, bool force,
                         const std::vector<fs::path>& read) {
   const fs::path file = given.empty() ? otherwise : fs::path(given);

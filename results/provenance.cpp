@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/results/json_text.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/scene/sha256.hpp"
 
@@ -54,6 +55,7 @@ std::string Provenance::fingerprint() const {
 
 Provenance provenance_of(const Scene& scene, std::map<std::string, std::string> versions) {
   Provenance p{scene.file, scene.sha256, scene.settings, {}, scene.sources, {}, std::move(versions), build_identity()};
+  p.reads = files_of(scene);
   p.values = sha256(json_line(value_json(scene.source)));
   // Many plugins may be of one library.
   std::string file, build;

@@ -2,6 +2,7 @@
 /// What a result comes from: scene, files, plugins, program; and the fingerprint of all of it.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -21,6 +22,7 @@ struct Provenance {
   std::vector<std::string> plugin_builds;         ///< of each of sources.plugins: build id or SHA-256 of its library
   std::map<std::string, std::string> versions{};  ///< of plugin libraries, by their files; may be empty
   BuildIdentity program;
+  std::vector<std::filesystem::path> reads{};  ///< files it comes from, as they are found now; they are not stored
 
   /// Of the values and the content of the files: the same result is meant, whoever computes it.
   [[nodiscard]] std::string subject() const;

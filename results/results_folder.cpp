@@ -14,6 +14,7 @@
 
 #include "withy/results/json_text.hpp"
 #include "withy/results/make_folder.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/scene/sha256.hpp"
 
@@ -32,6 +33,13 @@ Json read_record(const std::filesystem::path& folder) {
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   Json j = Json::parse(text, nullptr, false);
   return j.is_object() && j.value("format", "") == format_of_record ? j : Json();
+}
+
+/// Whether the file in the place of the record is another's: it is none of this program, whole or cut short.
+bool is_foreign(const std::filesystem::path& folder) {
+  std::ifstream in(folder / name_of_record, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return !text.empty() && text.find(format_of_record) == std::string::npos;
 }
 
 std::vector<std::string> recorded_content(const Json& record) {
@@ -71,6 +79,8 @@ std::vector<std::string> united(std::vector<std::string> names, const std::vecto
 std::string refusal(const std::filesystem::path& folder, const Json& kept, const Json& now,
                     const std::vector<std::string>& content) {
   constexpr const char* advice = "give another folder, or --force to replace it";
+  if (kept.is_null() && is_foreign(folder))
+    return fmt::format("{} holds {}, which is not of Withy: {}", folder.string(), name_of_record, advice);
   const std::vector<std::string> there = present(folder, kept.is_null() ? content : recorded_content(kept));
   if (there.empty() || same_result(kept, now)) return {};
   if (kept.is_null())
@@ -110,10 +120,7 @@ ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& comm
     now["content"] = content;
     now["process"] = ::getpid();
     if (use == FolderUse::begin)
-      if (const std::string why = refusal(path_, kept, now, content); !why.empty()) {
-        if (std::filesystem::is_empty(path_ / name_of_record)) std::filesystem::remove(path_ / name_of_record);
-        throw ResultsError(why);
-      }
+      if (const std::string why = refusal(path_, kept, now, content); !why.empty()) throw ResultsError(why);
     changed_ = change(kept, provenance);
     if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
     std::vector<std::string> old = content;
@@ -123,12 +130,16 @@ ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& comm
     } else {
       now["content"] = united(recorded_content(kept), content);
     }
+    keep_inputs_in(path_, united(old, {name_of_record}), provenance.reads);
     if (use != FolderUse::go_on) {
       for (const std::string& name : old)
         if (is_inside(name)) std::filesystem::remove_all(path_ / name);
     }
     write(json_text(now));
   } catch (...) {
+    std::error_code ignored;
+    if (std::filesystem::is_empty(path_ / name_of_record, ignored))
+      std::filesystem::remove(path_ / name_of_record, ignored);
     ::close(file_);
     throw;
   }
@@ -154,12 +165,12 @@ void ResultsFolder::lock() {
 // once, and the next run's cut would wait for that.
 void ResultsFolder::write(const std::string& text) const {
   const auto fail = [&] { throw std::system_error(errno, std::generic_category(), (path_ / name_of_record).string()); };
-  if (::ftruncate(file_, static_cast<off_t>(text.size())) != 0) fail();
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t count = ::pwrite(file_, text.data() + done, text.size() - done, static_cast<off_t>(done));
     if (count < 0 && errno != EINTR) fail();
     if (count > 0) done += static_cast<std::size_t>(count);
   }
+  if (::ftruncate(file_, static_cast<off_t>(text.size())) != 0) fail();
 }
 
 std::string folder_suffix(const std::vector<std::string>& settings) {

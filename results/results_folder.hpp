@@ -30,7 +30,8 @@ class ResultsFolder {
   /// Makes the folder where it is not there.
   /// \param content what the result consists of: names in the folder, and of this alone something is removed
   /// \throws FolderBusy; ResultsError where the folder holds another command's, scene's or values' result, or such
-  /// names without saying whose they are, and `use` is `begin`; std::system_error
+  /// names without saying whose they are, or a file `result.json` of another program, and `use` is `begin`;
+  /// study::InputError where one of provenance.reads would be removed or replaced; std::system_error
   ResultsFolder(std::filesystem::path path, const std::string& command, const Provenance& provenance,
                 const std::vector<std::string>& content, FolderUse use);
   ~ResultsFolder();

@@ -33,12 +33,14 @@ class SchemaWriter {
     properties["formulation"] = choice<Formulation>("formulation", grammar::default_formulation);
     properties["integrator"] = choice<Integrator>("integrator", grammar::default_integrator);
     properties["bodies"] = plugins<Body>(grammar::body_members(), "bodies of the tree");
+    properties["bodies"]["type"] = "object";
     properties["bodies"]["minProperties"] = 1;
     properties["hinges"] = plugins<Hinge>(grammar::hinge_members(), "hinges; each body is the child of exactly one");
+    properties["hinges"]["type"] = "object";
     properties["loads"] = plugins<Load>(grammar::load_members(), "loads on the tree");
     properties["motions"] = plugins<Motion>(grammar::motion_members(), "prescribed motions of hinges");
     properties["constraints"] = {
-        {"type", "object"},
+        {"type", map_or_nothing()},
         {"description", "hinges that close loops beyond the tree"},
         {"propertyNames", reference("name")},
         {"additionalProperties", {{"anyOf", alternatives<Hinge>("hinge", grammar::constraint_members())}}}};
@@ -65,6 +67,9 @@ class SchemaWriter {
   }
 
  private:
+  /// Nothing is an empty map where one may be empty.
+  static Json map_or_nothing() { return Json::array({"object", "null"}); }
+
   static Json number_or_quantity(Json number) {
     return {{"anyOf", Json::array({std::move(number), reference("quantity")})}};
   }
@@ -122,8 +127,9 @@ class SchemaWriter {
       case map:
         return members(spec.members);
       case named:
-        return {
-            {"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", members(spec.members)}};
+        return {{"type", map_or_nothing()},
+                {"propertyNames", reference("name")},
+                {"additionalProperties", members(spec.members)}};
       case matrix: {
         Json line = row(quantity(), 0);
         line["minItems"] = 1;
@@ -160,6 +166,7 @@ class SchemaWriter {
       if (s.required) required.push_back(s.key);
     }
     Json json = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+    json["type"] = required.empty() ? map_or_nothing() : Json("object");
     if (!required.empty()) json["required"] = required;
     return json;
   }
@@ -183,7 +190,7 @@ class SchemaWriter {
 
   template <class Interface>
   Json plugins(const Specs& common, const char* description) {
-    return {{"type", "object"},
+    return {{"type", map_or_nothing()},
             {"description", description},
             {"propertyNames", reference("name")},
             {"additionalProperties", {{"anyOf", alternatives<Interface>("type", common)}}}};
@@ -231,6 +238,7 @@ class SchemaWriter {
     Json forms = Json::array({reference("numbers"), number_or_quantity({{"type", "number"}})});
     for (const Specs& form : orientation_forms()) forms.push_back(members(form));
     forms.push_back(members(grammar::pose_members()));
+    forms.back()["type"] = "object";
     return {{"anyOf", forms}};
   }
 
@@ -241,18 +249,18 @@ class SchemaWriter {
 
   Json state() {
     const auto part = [rates = list_or_one()](const char* first, const Json& of_first, const char* second) {
-      return Json{{"type", "object"},
+      return Json{{"type", map_or_nothing()},
                   {"additionalProperties",
-                   {{"type", "object"},
+                   {{"type", map_or_nothing()},
                     {"additionalProperties", false},
                     {"properties", {{first, of_first}, {second, rates}}}}}};
     };
     const Json number = number_or_quantity({{"type", "number"}});
     const auto by_name = [](const Json& of_each) {
-      return Json{{"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", of_each}};
+      return Json{{"type", map_or_nothing()}, {"propertyNames", reference("name")}, {"additionalProperties", of_each}};
     };
-    const Json numbers_by_key = {{"type", "object"}, {"additionalProperties", number}};
-    return {{"type", "object"},
+    const Json numbers_by_key = {{"type", map_or_nothing()}, {"additionalProperties", number}};
+    return {{"type", map_or_nothing()},
             {"description", "state at the start; what is not named is as the loads begin, or at its reference"},
             {"additionalProperties", false},
             {"properties",

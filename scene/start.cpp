@@ -80,13 +80,25 @@ void check_continuous(const Model& model, const Checker& checker, const State& s
                                       std::isnan(number) ? "with no number" : "beyond the range of numbers"));
 }
 
+/// The time at which the scene begins; 0 where it says none that is right, which is reported where all is read.
+double time_of(const Document& document, const Value* initial, const Model& model) {
+  State state = model.reference_state();
+  if (initial == nullptr || initial->kind() != Value::Kind::map || !initial->has("time")) return state.time;
+  Diagnostics aside;
+  Registry none;
+  set_state(Value::map({{"time", initial->at("time")}}, initial->place()), model, Checker(document, none, aside),
+            state);
+  return aside.ok() ? state.time : 0;
+}
+
 }  // namespace
 
 void set_start(const Model& model, const Document& document, const Checker& checker, Scene& scene) {
+  const Value* initial = document.root.find("initial");
   scene.initial = model.reference_state();
+  scene.initial.time = time_of(document, initial, model);
   begin_loads(model, checker, scene.initial);
   if (const EventBook book(model); book.any()) book.begin(scene.initial.y);
-  const Value* initial = document.root.find("initial");
   const Value stated = initial != nullptr ? without_guess(*initial, model, checker, scene.initial) : Value();
   const Value* given = initial != nullptr ? &stated : nullptr;
   if (given != nullptr) {

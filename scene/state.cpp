@@ -252,6 +252,31 @@ class StateReader {
   bool good_ = true;
 };
 
+/// Loads' own states that neither `given` nor the scene names begin where the state read has them begin.
+/// \param start the scene's state, before `given` was read
+void begin_loads_anew(const Value& given, const Model& model, const Checker& checker, const State& start,
+                      State& state) {
+  if (model.layout().continuous == 0) return;
+  State by_scene = start, anew = state;
+  model.begin_continuous(by_scene);
+  model.begin_continuous(anew);
+  for (const LoadSlot& slot : model.layout().continuous_slots) {
+    for (std::size_t i = 0; i < slot.count; ++i) {
+      const std::size_t at = slot.first + i;
+      if (start.y[at] == by_scene.y[at]) state.y[at] = anew.y[at];
+    }
+  }
+  if (const Value* loads = given.find("loads"))
+    set_state(Value::map({{"loads", *loads}}, given.place()), model, checker, state);
+  for (const LoadSlot& slot : model.layout().continuous_slots)
+    for (std::size_t i = 0; i < slot.count; ++i)
+      if (!std::isfinite(state.y[slot.first + i]))
+        checker.diagnostics().error(
+            given.place(), fmt::format("load '{}': its state '{}' begins with no finite number here; say it "
+                                       "under 'loads'",
+                                       model.loads()[slot.load].name, model.loads()[slot.load].continuous->name(i)));
+}
+
 }  // namespace
 
 bool accept_quaternion(std::span<double> q, const Place& place, Diagnostics& diagnostics) {
@@ -279,7 +304,9 @@ State parse_state(std::string_view text, const std::string& file, const Model& m
     // A run.json says with which state its run ended.
     const Value& root = document.root;
     const Value* final = root.kind() == Value::Kind::map && root.has("status") ? root.find("final") : nullptr;
-    set_state(final != nullptr ? *final : root, model, Checker(document, none, diagnostics), state);
+    const Value& given = final != nullptr ? *final : root;
+    const Checker checker(document, none, diagnostics);
+    if (set_state(given, model, checker, state)) begin_loads_anew(given, model, checker, start, state);
   }
   if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
   return state;

@@ -5,8 +5,10 @@
 namespace withy::app {
 
 std::unique_ptr<ResultsFolder> take_folder(const OutputArguments& arguments, const std::string& command,
-                                           const Provenance& provenance, const std::vector<std::string>& content) {
+                                           Provenance provenance, const std::vector<std::string>& content,
+                                           const std::string& also_read) {
   if (arguments.out.empty()) return nullptr;
+  provenance.reads.emplace_back(also_read);
   return std::make_unique<ResultsFolder>(arguments.out, command, provenance, content,
                                          arguments.force ? FolderUse::replace : FolderUse::begin);
 }

@@ -11,9 +11,11 @@ namespace withy::app {
 
 /// Takes the folder of the command line; null where none is asked for.
 /// \param content of the folder, as ResultsFolder has it
-/// \throws ResultsError, FolderBusy, std::system_error
+/// \param also_read a file beside those of the scene; may be empty
+/// \throws ResultsError, FolderBusy, study::InputError, std::system_error as ResultsFolder
 std::unique_ptr<ResultsFolder> take_folder(const OutputArguments& arguments, const std::string& command,
-                                           const Provenance& provenance, const std::vector<std::string>& content);
+                                           Provenance provenance, const std::vector<std::string>& content,
+                                           const std::string& also_read = {});
 
 /// What results of the scene come from.
 Provenance provenance_of(const Scene& scene, const Plugins& plugins);

@@ -198,8 +198,8 @@ class BoundLoad {
   [[nodiscard]] virtual const InputPort* input() const { return nullptr; }
   /// Time [s] at which the load has done its work (a slew's end); 0 where it has no end of its own.
   [[nodiscard]] virtual double end() const = 0;
-  /// Sets the hinge coordinates where the load wants the motion to begin (a slew starts at its `from`); neither the
-  /// time nor how many numbers there are.
+  /// Sets the hinge coordinates where the load wants the motion to begin (a slew starts at its `from`) at the
+  /// state's time, that of the scene; neither the time nor how many numbers there are.
   virtual void begin(State& state) const = 0;
   /// The load for the same tree compiled in these terms, its bodies in their strain kinematics, where it asks the model
   /// for more than indices; null where it is that one itself.

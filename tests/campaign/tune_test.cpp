@@ -180,6 +180,42 @@ TEST(Tune, KeepsUnitsAndTheSameBitsWhateverTheJobs) {
   EXPECT_EQ(one.parameters[2].tuned.start, 20);
 }
 
+// A pendulum tells m l / (J + m l²) alone, J about its centre: a per cent of m is J / (J − m l²) per cent of l,
+// whatever the search began with; more of a negative place is further from 0.
+TEST(Tune, TellsSamenessInPerCentsOfTheValuesFound) {
+  const TuneFolder folder;
+  const double m = 1.2, l = 0.53, J = 0.8, g = 9.81;
+  const double stiffness = m * g * l / (J + m * l * l);
+  double x = 0.5, v = 0;
+  std::string text = "t[s],h[rad]\n";
+  for (int i = 0; i < 3000; ++i) {  // steps of 1 ms: to a millionth
+    if (i % 50 == 0) text += fmt::format("{},{}\n", 0.001 * i, x);
+    const double before = -stiffness * std::sin(x);
+    x += 0.001 * v + 0.5e-6 * before;
+    v += 0.0005 * (before - stiffness * std::sin(x));
+  }
+  folder.write("data.csv", text);
+  for (const double start : {-0.4, -0.6}) {
+    const std::string scene = fmt::format(
+        "format: withy/1\ngravity: [0, -9.81, 0]\ntime: {{end: 3, output: 0.05}}\n"
+        "integrator: {{name: dopri5, rtol: 1e-8, atol: 1e-10}}\n"
+        "bodies: {{b: {{type: rigid, mass: {}, center_of_mass: [0, {}, 0], inertia: [1, 1, {}, 0, 0, 0]}}}}\n"
+        "hinges: {{h: {{type: revolute, axis: [0, 0, 1], parent: world, child: b}}}}\n"
+        "initial: {{hinges: {{h: {{position: 0.5}}}}}}\n",
+        m, start, J);
+    TuneQuestion question;
+    question.parameters = {"bodies.b.center_of_mass.1", "bodies.b.mass"};
+    const TuneResult result = folder.tuned(question, scene);
+    ASSERT_TRUE(result.converged()) << result.trouble;
+    const FittedValue &place = result.parameters[0], &mass = result.parameters[1];
+    EXPECT_NEAR(place.value, -l, 1e-4);
+    ASSERT_EQ(mass.same_as.size(), 1);
+    const double expected = J / (J - m * l * l);
+    EXPECT_NEAR(mass.same_as[0].second, expected, 0.01 * expected) << start;
+    EXPECT_THAT(tune_text(result, "b"), HasSubstr("% more of bodies.b.center_of_mass.1"));
+  }
+}
+
 TEST(Tune, NamesWhatTheDataCannotTellApart) {
   const TuneFolder folder;
   folder.measure({}, 1e-4, 1);

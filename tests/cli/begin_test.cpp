@@ -266,7 +266,7 @@ TEST(Check, SaysWhatIsHardlyMeant) {
   EXPECT_THAT(said({"bodies.payload.frames={handle: {position: [0, 0, 1]}}"}),
               HasSubstr("nothing uses the frame 'payload.handle'"));
   // Next to no rotor behind the elbow's gains.
-  const std::string light = said({"bodies.elbow_rotor.inertia=[1e-6, 1e-6, 1e-6, 0, 0, 0]"});
+  const std::string light = said({"hinges.elbow.reflected_inertia=1e-6"});
   EXPECT_THAT(light, HasSubstr("/loads/control/hinges/elbow: the servo on 'elbow' drives an inertia of"));
   EXPECT_THAT(light, Not(HasSubstr("the servo on 'shoulder'")));
   // Functions without a moment at the tip, and the remedy that is named.

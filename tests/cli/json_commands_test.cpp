@@ -40,6 +40,25 @@ TEST(Eval, GivesOneObjectWithConsistentShapes) {
   }
 }
 
+// 0.2 + 1 s · 0.3/s is beyond `on`: a run begins with the jets on.
+TEST(Eval, HasRelaysStandAsWhereARunBegins) {
+  const Folder folder;
+  folder.write("s.yaml", R"(format: withy/1
+time: {end: 1}
+bodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: a}}
+loads: {jets: {type: hinge-relay, hinge: h, effort: 2, on: 0.4, off: 0.1, rate_time: 1}}
+initial: {hinges: {h: {position: 0.2, rate: 0.3}}}
+)");
+  const auto applied = [&](const char* held) {
+    folder.write("state.json", held);
+    return result(folder, {"eval", "s.yaml", "--state", "state.json"}).at("applied");
+  };
+  EXPECT_EQ(applied("{}"), json({-2.0}));
+  EXPECT_EQ(applied(R"({"hinges": {"h": {"rate": [0.1]}}})"), json({0.0}));
+  EXPECT_EQ(applied(R"({"held": {"jets": [0]}})"), json({0.0})) << "what a state says they hold, they hold";
+}
+
 TEST(Eval, ABadStateIsLocatedBadInput) {
   const Folder folder;
   folder.write("state.json", R"({"hinges": {"sholder": {"position": [0.1]}}})");

@@ -114,6 +114,43 @@ TEST(ResultsFolder, FilesOfUnknownOriginAreLeftAlone) {
   EXPECT_EQ(scratch.read("victim"), "kept") << "a record is no order to remove files elsewhere";
 }
 
+TEST(ResultsFolder, ARecordOfAnotherProgramIsLeftAlone) {
+  const Scratch scratch;
+  scratch.write("out/result.json", "{\"mine\": \"measurements\"}");
+  EXPECT_THAT(refusal(scratch / "out", "run", origin()), HasSubstr("holds result.json, which is not of Withy"));
+  EXPECT_EQ(scratch.read("out/result.json"), "{\"mine\": \"measurements\"}");
+  scratch.write("out/result.json", "{\"format\": \"withy-result/1\", \"comm");
+  EXPECT_EQ(refusal(scratch / "out", "run", origin()), "") << "one of its own that was cut short";
+  scratch.write("out/result.json", "mine");
+  EXPECT_EQ(refusal(scratch / "out", "run", origin(), FolderUse::replace), "");
+}
+
+TEST(ResultsFolder, NothingThatIsReadIsRemovedOrReplaced) {
+  const Scratch scratch;
+  const auto refused = [&](const std::string& read) -> std::string {
+    Provenance p = origin();
+    p.reads = {scratch / "elsewhere", scratch / read};
+    try {
+      const ResultsFolder taken(scratch / "out", "run", p, content, FolderUse::replace);
+    } catch (const study::InputError& e) {
+      return e.what();
+    }
+    return {};
+  };
+  scratch.write("out/run.json", "data");
+  scratch.write("out/mine.csv", "data");
+  EXPECT_EQ(refused("out/mine.csv"), "") << "no name of this result";
+  scratch.write("out/run.json", "data");
+  std::filesystem::create_symlink("run.json", scratch / "out/link.json");
+  for (const char* read : {"out/run.json", "out/../out/run.json", "out/link.json", "out/result.json"})
+    EXPECT_THAT(refused(read), HasSubstr("read by this command and is not replaced")) << read;
+  EXPECT_EQ(scratch.read("out/run.json"), "data");
+  std::filesystem::remove(scratch / "out/run.json");
+  scratch.write("out/run.json/below/data.csv", "data");
+  EXPECT_THAT(refused("out/run.json/below/data.csv"), HasSubstr("is read by this command, and "));
+  EXPECT_EQ(scratch.read("out/run.json/below/data.csv"), "data");
+}
+
 TEST(ResultsFolder, SaysWhatHasChangedSinceItWasWritten) {
   const Scratch scratch;
   EXPECT_EQ(refusal(scratch / "out", "run", origin()), "");

@@ -90,6 +90,7 @@ class Validator {
     if (type == "number") return value.is_number();
     if (type == "integer") return value.is_number_integer();
     if (type == "boolean") return value.is_boolean();
+    if (type == "null") return value.is_null();
     throw std::logic_error("type " + type);
   }
 
@@ -171,6 +172,28 @@ TEST_F(Schema, AcceptsEverySceneOfTheProject) {
   EXPECT_EQ(fault(begun + "{position: 30 deg, rate: 0.1}}}\n"), "");
   EXPECT_EQ(fault(begun + "{position: [30 deg], rate: [0.1]}}}\n"), "");
   EXPECT_EQ(fault("integrator: {rtol: 1e-9}\n" + std::string(good_scene)), "");
+}
+
+TEST_F(Schema, AcceptsNothingWhereAMapMayBeEmpty) {
+  for (const char* key : {"motions", "events", "outputs", "constraints", "initial", "formulation", "integrator"}) {
+    const std::string text = std::string(good_scene) + key + ":\n";
+    EXPECT_EQ(fault(text), "") << key;
+    EXPECT_EQ(problems(text, registry), "") << key;
+  }
+  const std::string out = "out: {position: [0.0762, 0, 0]}", pose = "parent: world, child: hub}";
+  for (const std::string& text :
+       {replaced(good_scene, out, "out:"), replaced(good_scene, pose, "offset: null, " + pose),
+        good_scene + std::string("initial: {hinges: {shoulder: }, bodies: null, settings: ~}\n")}) {
+    EXPECT_EQ(fault(text), "") << text;
+    EXPECT_EQ(problems(text, registry), "") << text;
+  }
+  for (const std::string& text :
+       {replaced(good_scene, "0.0762, 0, 0]}", "0.0762, 0, 0], orientation: }"),
+        replaced(good_scene, "gravity: [0, -9.81, 0]", "gravity:"), "bodies:\n" + std::string("format: withy/1\n"),
+        good_scene + std::string("initial: {hinges: {shoulder: {position: }}}\n")}) {
+    EXPECT_NE(fault(text), "") << text;
+    EXPECT_NE(problems(text, registry), "") << text;
+  }
 }
 
 TEST_F(Schema, RefusesWhatTheReaderRefuses) {

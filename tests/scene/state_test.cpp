@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -73,6 +74,33 @@ TEST_F(States, LeaveWhatTheyDoNotNameAsItWas) {
   EXPECT_EQ(state.y, expected.y);
 }
 
+// A derivative's filter begins at the error, 1 − x here, so that the derivative is zero.
+TEST_F(States, HaveControllersBeginThereThatNeitherTheyNorTheSceneName) {
+  const std::string text = R"(format: withy/1
+time: {end: 1}
+bodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: a}}
+loads:
+  servo: {type: pid, hinge: h, proportional: 4, integral: 2, derivative: 3, filter: 0.1, reference: 1}
+)";
+  const Scene plain = parse_scene(text, "s", registry);
+  const auto states = [&](const Scene& of, const char* state) {
+    const State s = parse_state(state, "s", *of.model, of.initial);
+    const LoadSlot& slot = of.model->layout().continuous_slots.at(0);
+    std::map<std::string, double> named;
+    for (std::size_t i = 0; i < slot.count; ++i)
+      named[of.model->loads()[slot.load].continuous->name(i)] = s.y[slot.first + i];
+    return named;
+  };
+  using Named = std::map<std::string, double>;
+  EXPECT_EQ(states(plain, "time: 0"), (Named{{"filter", 1}, {"integral", 0}}));
+  EXPECT_EQ(states(plain, "hinges: {h: {position: 0.25}}"), (Named{{"filter", 0.75}, {"integral", 0}}));
+  EXPECT_EQ(states(plain, "{hinges: {h: {position: 0.25}}, loads: {servo: {filter: 1}}}"),
+            (Named{{"filter", 1}, {"integral", 0}}));
+  const Scene stated = parse_scene(text + "initial: {loads: {servo: {filter: 0.5, integral: 0.3}}}\n", "s", registry);
+  EXPECT_EQ(states(stated, "hinges: {h: {position: 0.25}}"), (Named{{"filter", 0.5}, {"integral", 0.3}}));
+}
+
 TEST_F(States, MayCarryUnitsWhereTheHingeIsKnown) {
   const State s =
       parse_state("hinges: {left_drive: {position: [90 deg], rate: [60 rpm]}, right_slide: {position: [5 mm]}}", "s",
@@ -141,6 +169,29 @@ TEST_F(States, AreCheckedAgainstTheModel) {
   EXPECT_THAT(problem(R"({"time": "soon"})"), testing::HasSubstr("/time: got \"soon\"; need finite [s]"));
   EXPECT_THAT(problem("{"), StartsWith("state.json:1:1: a list or map that is never closed"));
   EXPECT_THAT(problem("{\"time\": 1"), StartsWith("state.json:1:"));
+}
+
+TEST_F(States, BeginOnTheTrajectoryThatIsFollowedAtTheirTime) {
+  const std::string text = R"(format: withy/1
+time: {end: 4}
+bodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: a}}
+loads:
+  servo:
+    type: pd-controller
+    law: sine
+    period: 4
+    time_scale: 2
+    hinges: {h: {amplitude: 1, center: 0.5, phase: 30 deg, stiffness: 2, damping: 1}}
+)";
+  const auto begun = [&](const std::string& initial) { return parse_scene(text + initial, "s", registry).initial; };
+  const double pi = std::numbers::pi;
+  EXPECT_NEAR(begun("").y[0], 0.5 + std::sin(pi / 6), 1e-15);
+  const State later = begun("initial: {time: 1}\n");
+  EXPECT_NEAR(later.y[0], 0.5 + std::sin(7 * pi / 6), 1e-15);
+  EXPECT_NEAR(later.y[1], pi * std::cos(7 * pi / 6), 1e-14);
+  EXPECT_EQ(begun("initial: {time: 1, hinges: {h: {position: 0.25}}}\n").y[0], 0.25);
+  EXPECT_THAT(problems(text + "initial: {time: soon}\n", registry), testing::HasSubstr("/initial/time: got \"soon\""));
 }
 
 TEST_F(States, OfASlewBeginWhereItBegins) {
