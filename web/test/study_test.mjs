@@ -5,7 +5,7 @@ import { execSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { scale_of } from '../src/studies/figure.js';
-import { name_within } from '../src/studies/sweep.js';
+import { name_within, names_beside } from '../src/studies/sweep.js';
 import { in_browser, opened, says, text } from './browser.mjs';
 import { check_words } from './landmarks.mjs';
 
@@ -30,6 +30,20 @@ function check_names() {
   const cut = name_within('initial.hinges.the_slider_of_the_arm.position.0', ' = -0.3654', 42);
   assert.equal(cut, '…he_slider_of_the_arm.position.0 = -0.3654');
   assert.equal(cut.length, 42);
+}
+
+// Wherever three lines stand, their names are all there in their order, in the frame, and none runs into another.
+function check_names_of_lines() {
+  const names = ['5 %', 'median', '95 %'], at = [80, 81, 100, 130, 200, 300, 380, 399, 400];
+  for (const a of at) for (const b of at.filter(x => x >= a)) for (const c of at.filter(x => x >= b)) {
+    const placed = names_beside([a, b, c].map((x, i) => ({ x, name: names[i] })), 80, 400);
+    assert.equal(placed.map(p => p.name).join(', '), '5 %, median, 95 %');
+    placed.forEach((p, i) => {
+      assert.ok(p.from >= 80 && p.to <= 400, `${[a, b, c]}: ${p.name} leaves the frame`);
+      assert.ok(i === 0 || p.from >= placed[i - 1].to, `${[a, b, c]}: ${p.name} runs into the one before`);
+    });
+  }
+  assert.equal(names_beside([100, 200, 300].map((x, i) => ({ x, name: names[i] })), 80, 400).length, 3);
 }
 
 // Each model is a mark where its numbers say; a click tells all of it, with the command that runs it.
@@ -311,6 +325,7 @@ async function check_inverse(browser, folder, run, troubles) {
 
 check_log_ticks();
 check_names();
+check_names_of_lines();
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
   for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_one_at_a_time, check_figures]) await check(browser, folder, run, troubles);
