@@ -114,11 +114,27 @@ async function check_modes(browser, folder, run, troubles) {
   await page.click('#theme');
   await shot(page, 'modes-dark');
   await page.close();
+  await check_lines_of_the_rate(browser, folder, run, troubles);
   run('modes', join(scenes, 'two-link-slew.yaml'), '--lock', 'shoulder,elbow', '--out', join(folder, 'locked'));
   const single = await opened(browser, join(folder, 'locked/report.html'), 'theme=light', troubles);
   assert.ok(await single.locator('table.rows tbody tr').count() >= 2);
   await shot(single, 'modes-single');
   await single.close();
+}
+
+// Lines of the rate are inside the frame for rates of either sign, whichever way they are swept: from zero to both sides.
+async function check_lines_of_the_rate(browser, folder, run, troubles) {
+  for (const [rates, sides] of [['-60 rpm:60 rpm:5', 2], ['60 rpm:0 rpm:5', 1], ['-60 rpm:0 rpm:5', 1], ['30 rpm:60 rpm:5', 1]]) {
+    const out = join(folder, `rates${rates.replaceAll(/[ :]/g, '_')}`);
+    run('modes', join(scenes, 'rotating-blade.yaml'), '--sweep', `spin.axle=${rates}`, '--out', out);
+    const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+    const frame = await page.locator('#campbell rect.frame').evaluate(e => e.getBBox());
+    const lines = await page.locator('#campbell path.harmonic').evaluateAll(all => all.map(e => { const b = e.getBBox(); return [b.x, b.y, b.x + b.width, b.y + b.height]; }));
+    assert.equal(lines.length, 4 * sides, rates);
+    for (const [left, top, right, foot] of lines)
+      assert.ok(left > frame.x - 0.1 && right < frame.x + frame.width + 0.1 && top > frame.y - 0.1 && foot < frame.y + frame.height + 0.1, rates);
+    await page.close();
+  }
 }
 
 // The locus of a loop has a mark for each eigenvalue of its branches, and branches that end leave gaps.
@@ -169,7 +185,7 @@ async function check_blades(browser, folder, run, troubles) {
   const marks = () => page.locator('#campbell .mark').count();
   assert.equal(await marks(), blades.branches.flatMap(b => b.at).filter(Boolean).length);
   assert.match(await text(page, '#campbell'), /1 per turn[^]*3 per turn[^]*6 per turn/);
-  assert.match(await text(page, '#mode'), /forward|backward|collective/);
+  assert.match(await text(page, '#campbell'), /forward|backward|collective/);
   assert.doesNotMatch(await text(page, '.answer'), /one frozen angle/);
   await shot(page, 'blades-light');
   await page.selectOption('select[aria-label="Seen from"]', 'the blades, at one angle');
