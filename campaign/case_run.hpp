@@ -19,7 +19,7 @@ struct CaseResult {
   std::uint64_t index = 0;
   std::string status;           ///< of the run; "refused" where the values make no scene or no equations
   std::string message;          ///< why it is not "completed"
-  std::vector<Value> values;    ///< as Cases::values
+  CaseValues values;            ///< as Cases::values
   std::vector<double> numbers;  ///< as kept_columns; none where it is not completed, not finite where one is none
   double seconds = 0;           ///< CPU time, which differs from run to run
   [[nodiscard]] bool completed() const { return status == "completed"; }

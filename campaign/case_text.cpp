@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The run of the case by itself, with all its results.
-std::string run_command_of(const Plan& plan, const SceneValues& scene, const std::vector<Value>& values) {
+std::string run_command_of(const Plan& plan, const SceneValues& scene, const CaseValues& values) {
   std::string text = command_with("withy run", scene.file(), plan.plugin_folders);
   const auto add = [&](const std::string& path, const Value& value) {
     text += " --set " + quoted(study::Change{path, value}.text());
@@ -26,7 +26,7 @@ std::string run_command_of(const Plan& plan, const SceneValues& scene, const std
   for (const auto& [path, value] : plan.set) add(path, value);
   const std::vector<std::string> paths = varied_paths(plan);
   for (std::size_t a = 0; a < values.size(); ++a)
-    if (values[a].kind() != Value::Kind::null) add(paths[a], values[a]);
+    if (values[a]) add(paths[a], *values[a]);
   return text;
 }
 
@@ -53,7 +53,8 @@ Json case_json(const Plan& plan, const CaseResult& result) {
             {"values", Json::object()},
             {"results", Json::object()}};
   const std::vector<std::string> paths = varied_paths(plan), columns = kept_columns(plan);
-  for (std::size_t a = 0; a < result.values.size(); ++a) j["values"][paths[a]] = value_json(result.values[a]);
+  for (std::size_t a = 0; a < result.values.size(); ++a)
+    if (const auto& value = result.values[a]) j["values"][paths[a]] = value_json(*value);
   if (result.completed()) {
     for (std::size_t i = 0; i < columns.size(); ++i) j["results"][columns[i]] = finite_or_null(result.numbers.at(i));
     if (!plan.history.of.empty())

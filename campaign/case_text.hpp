@@ -9,8 +9,9 @@
 
 namespace withy::campaign {
 
-/// `case`, `status`, `message`, `values` by their paths, `results` by kept_columns, `command`; where the plan keeps any
-/// `histories`: `t[s]`, and by history_columns a number a time, null at those that the run has not come to.
+/// `case`, `status`, `message`, `values` that the case sets by their paths, null for what is taken away, `results` by
+/// kept_columns, `command`; where the plan keeps any `histories`: `t[s]`, and by history_columns a number a time, null
+/// at those that the run has not come to.
 nlohmann::ordered_json case_json(const Plan& plan, const CaseResult& result);
 /// The same in words. \param result of case_json
 std::string case_text(const nlohmann::ordered_json& result);

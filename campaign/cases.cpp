@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "withy/campaign/derived.hpp"
+#include "withy/campaign/overlaps.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -11,11 +12,11 @@ namespace {
 // Shares of a distribution that one at a time takes where an axis has no levels: one deviation of a normal value.
 constexpr double low_share = 0.15865525393145705, high_share = 0.8413447460685429;
 
-/// Whether no path leads to a part of what another leads to.
+/// Whether no path leads to what another leads to, or to a part of it.
 bool apart(const std::vector<std::string>& paths) {
   for (const std::string& path : paths)
     for (const std::string& other : paths)
-      if (&path != &other && (other + '.').starts_with(path + '.')) return false;
+      if (&path != &other && (path == other || is_within(path, other))) return false;
   return true;
 }
 
@@ -44,13 +45,13 @@ Cases::Cases(const Plan& plan) : plan_(plan), paths_(varied_paths(plan)), apart_
   }
 }
 
-std::vector<Value> Cases::values(std::uint64_t index) const {
-  std::vector<Value> values = of_axes(index);
-  for (const Derived& d : plan_.derived) values.emplace_back(value_of(d, *plan_.base, values));
+CaseValues Cases::values(std::uint64_t index) const {
+  CaseValues values = of_axes(index);
+  for (const Derived& d : plan_.derived) values.emplace_back(Value(value_of(d, *plan_.base, values)));
   return values;
 }
 
-std::vector<Value> Cases::of_axes(std::uint64_t index) const {
+CaseValues Cases::of_axes(std::uint64_t index) const {
   switch (plan_.design) {
     case Design::one_at_a_time:
       return alone(index);
@@ -64,19 +65,18 @@ std::vector<Value> Cases::of_axes(std::uint64_t index) const {
   return of_product(index);
 }
 
-void Cases::set(SceneValues& scene, const std::vector<Value>& values, const std::string& origin) const {
+void Cases::set(SceneValues& scene, const CaseValues& values, const std::string& origin) const {
   for (std::size_t a = 0; a < values.size(); ++a)
-    if (values[a].kind() != Value::Kind::null) scene.set(paths_[a], values[a], origin);
+    if (values[a]) scene.set(paths_[a], *values[a], origin);
 }
 
-SceneValues Cases::scene(const std::vector<Value>& values, const std::string& origin) const {
+SceneValues Cases::scene(const CaseValues& values, const std::string& origin) const {
   SceneValues scene = plan_.base->values;
   set(scene, values, origin);
   return scene;
 }
 
-SceneValues Cases::scene(const std::vector<Value>& values, const std::string& origin,
-                         std::vector<SceneValues>& spare) const {
+SceneValues Cases::scene(const CaseValues& values, const std::string& origin, std::vector<SceneValues>& spare) const {
   if (spare.empty() || !spares(values)) return scene(values, origin);
   SceneValues scene = std::move(spare.back());
   spare.pop_back();
@@ -85,21 +85,22 @@ SceneValues Cases::scene(const std::vector<Value>& values, const std::string& or
   return scene;
 }
 
-bool Cases::spares(const std::vector<Value>& values) const {
-  return apart_ && std::all_of(values.begin(), values.end(),
-                               [](const Value& value) { return value.kind() == Value::Kind::number; });
+bool Cases::spares(const CaseValues& values) const {
+  return apart_ && std::all_of(values.begin(), values.end(), [](const std::optional<Value>& value) {
+           return value && value->kind() == Value::Kind::number;
+         });
 }
 
-std::vector<Value> Cases::of_product(std::uint64_t index) const {
+CaseValues Cases::of_product(std::uint64_t index) const {
   const std::uint64_t draw = index % plan_.cases, point = index / plan_.cases;
   std::vector<std::size_t> at(plan_.grids.size());
   std::uint64_t rest = point;
   for (std::size_t g = at.size(); g-- > 0; rest /= plan_.grids[g]) at[g] = rest % plan_.grids[g];
   const std::vector<double> numbers = drawn(Key(plan_.seed)[point], draw);
-  std::vector<Value> values;
+  CaseValues values;
   for (std::size_t a = 0; a < plan_.axes.size(); ++a) {
     const Axis& axis = plan_.axes[a];
-    values.push_back(axis.drawn() ? Value(axis.distribution.quantile(numbers[a])) : axis.levels.at(at[axis.grid]));
+    values.emplace_back(axis.drawn() ? Value(axis.distribution.quantile(numbers[a])) : axis.levels.at(at[axis.grid]));
   }
   return values;
 }
@@ -130,8 +131,8 @@ std::vector<double> Cases::drawn(const Key& key, std::uint64_t draw) const {
   return shares;
 }
 
-std::vector<Value> Cases::alone(std::uint64_t index) const {
-  std::vector<Value> values(plan_.axes.size());
+CaseValues Cases::alone(std::uint64_t index) const {
+  CaseValues values(plan_.axes.size());
   if (index-- == 0) return values;
   std::size_t a = 0;
   for (; index >= levels_alone(plan_.axes[a]); ++a) index -= levels_alone(plan_.axes[a]);
@@ -161,25 +162,26 @@ MorrisTrajectory morris_trajectory(const Plan& plan, std::uint64_t number) {
   return trajectory;
 }
 
-std::vector<Value> Cases::on_trajectory(std::uint64_t index) const {
+CaseValues Cases::on_trajectory(std::uint64_t index) const {
   const std::size_t n = plan_.axes.size();
   MorrisTrajectory trajectory = morris_trajectory(plan_, index / (n + 1));
   for (std::size_t k = 0; k < index % (n + 1); ++k)
     trajectory.begin[trajectory.steps[k].axis] += trajectory.steps[k].step;
-  std::vector<Value> values;
-  for (std::size_t a = 0; a < n; ++a) values.emplace_back(plan_.axes[a].distribution.quantile(trajectory.begin[a]));
+  CaseValues values;
+  for (std::size_t a = 0; a < n; ++a)
+    values.emplace_back(Value(plan_.axes[a].distribution.quantile(trajectory.begin[a])));
   return values;
 }
 
 /// Cases of a sample: its first point, that with each column of the second in turn, the second.
-std::vector<Value> Cases::of_samples(std::uint64_t index) const {
+CaseValues Cases::of_samples(std::uint64_t index) const {
   const std::size_t n = plan_.axes.size();
   const std::uint64_t place = index % (n + 2);
   const std::vector<double> both = sobol_point(Key(plan_.seed)["saltelli"], index / (n + 2), 2 * n);
-  std::vector<Value> values;
+  CaseValues values;
   for (std::size_t a = 0; a < n; ++a) {
     const bool second = place == n + 1 || place == a + 1;
-    values.emplace_back(plan_.axes[a].distribution.quantile(both[second ? n + a : a]));
+    values.emplace_back(Value(plan_.axes[a].distribution.quantile(both[second ? n + a : a])));
   }
   return values;
 }

@@ -17,25 +17,25 @@ class Cases {
   explicit Cases(const Plan& plan);
   /// Numbered from 0; of a product the grids vary slowest, the first of them most slowly, and the draws fastest.
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// A value for each axis, then each that is derived; null where the scene's own stays.
-  [[nodiscard]] std::vector<Value> values(std::uint64_t index) const;
+  /// \param index below size()
+  [[nodiscard]] CaseValues values(std::uint64_t index) const;
   /// The scene with these values. \param origin of messages: "case 17"
-  [[nodiscard]] SceneValues scene(const std::vector<Value>& values, const std::string& origin) const;
+  [[nodiscard]] SceneValues scene(const CaseValues& values, const std::string& origin) const;
   /// The same, made of one that another case is done with where there is one in `spare`: a copy costs more.
-  [[nodiscard]] SceneValues scene(const std::vector<Value>& values, const std::string& origin,
+  [[nodiscard]] SceneValues scene(const CaseValues& values, const std::string& origin,
                                   std::vector<SceneValues>& spare) const;
   /// Whether the scene of a case with these values, which nobody has changed since, may be one of the spare.
-  [[nodiscard]] bool spares(const std::vector<Value>& values) const;
+  [[nodiscard]] bool spares(const CaseValues& values) const;
 
  private:
-  [[nodiscard]] std::vector<Value> of_axes(std::uint64_t index) const;
-  [[nodiscard]] std::vector<Value> of_product(std::uint64_t index) const;
-  [[nodiscard]] std::vector<Value> alone(std::uint64_t index) const;
-  [[nodiscard]] std::vector<Value> on_trajectory(std::uint64_t index) const;
-  [[nodiscard]] std::vector<Value> of_samples(std::uint64_t index) const;
+  [[nodiscard]] CaseValues of_axes(std::uint64_t index) const;
+  [[nodiscard]] CaseValues of_product(std::uint64_t index) const;
+  [[nodiscard]] CaseValues alone(std::uint64_t index) const;
+  [[nodiscard]] CaseValues on_trajectory(std::uint64_t index) const;
+  [[nodiscard]] CaseValues of_samples(std::uint64_t index) const;
   [[nodiscard]] std::vector<double> drawn(const Key& key, std::uint64_t draw) const;
 
-  void set(SceneValues& scene, const std::vector<Value>& values, const std::string& origin) const;
+  void set(SceneValues& scene, const CaseValues& values, const std::string& origin) const;
 
   const Plan& plan_;
   std::vector<std::string> paths_;  ///< of the values

@@ -76,9 +76,11 @@ class Table {
   OutputFile file_;
 };
 
-std::string cell(const Value& value) {
-  if (value.kind() == Value::Kind::number) return fmt::format("{}", value.number());
-  return value.kind() == Value::Kind::text ? csv_text(value.text()) : "";
+/// Empty where the scene's own value stays, "null" where it is taken away.
+std::string cell(const std::optional<Value>& value) {
+  if (!value) return "";
+  if (value->kind() == Value::Kind::number) return fmt::format("{}", value->number());
+  return value->kind() == Value::Kind::null ? "null" : csv_text(value->text());
 }
 
 /// Empty where a result is not finite, as in results.csv.
@@ -164,20 +166,27 @@ class Collector {
     return all;
   }
 
-  /// ",0.5,": the values that all cases of a point share, empty for those that are drawn, and where no case of the
-  /// point has run.
-  std::string point_cells(std::uint64_t point) {
+  /// The values that all cases of a point share; nothing for those that are drawn, and where no case of the point has
+  /// run.
+  CaseValues point_values(std::uint64_t point) {
     std::vector<CaseResult> some;
     for (std::uint64_t i = point * about_.draws; i < (point + 1) * about_.draws && some.size() < 2; ++i)
       if (auto result = index_.read(i)) some.push_back(std::move(*result));
-    std::string text;
-    for (std::size_t a = 0; a < about_.paths.size(); ++a) {
-      const std::string value = some.empty() ? "" : cell(some.front().values.at(a));
+    CaseValues values(about_.paths.size());
+    for (std::size_t a = 0; a < values.size() && !some.empty(); ++a) {
+      const std::optional<Value>& value = some.front().values.at(a);
       // Stores of earlier versions do not say what is drawn: there two cases tell it.
-      const bool shared =
-          about_.shared.empty() ? some.size() == 2 && value == cell(some.back().values.at(a)) : about_.shared.at(a);
-      text += ',' + (shared ? value : std::string());
+      const bool shared = about_.shared.empty() ? some.size() == 2 && cell(value) == cell(some.back().values.at(a))
+                                                : about_.shared.at(a);
+      if (shared) values[a] = value;
     }
+    return values;
+  }
+
+  /// ",0.5,".
+  static std::string point_cells(const CaseValues& values) {
+    std::string text;
+    for (const std::optional<Value>& value : values) text += ',' + cell(value);
     return text;
   }
 
@@ -188,7 +197,7 @@ class Collector {
                "median.high,p95,p95.low,p95.high");
     const std::size_t at_once = std::clamp<std::size_t>(most_numbers / about_.draws, 1, about_.columns.size());
     for (std::uint64_t point = 0; point < about_.size / about_.draws; ++point) {
-      const std::string where = fmt::format("{}{}", point, point_cells(point));
+      const std::string where = fmt::format("{}{}", point, point_cells(point_values(point)));
       for (std::size_t first = 0; first < about_.columns.size(); first += at_once) {
         auto columns = samples(point * about_.draws, (point + 1) * about_.draws, first,
                                std::min(at_once, about_.columns.size() - first));
@@ -218,7 +227,8 @@ class Collector {
     const std::size_t times = about_.times.size(), count = times * about_.histories.size();
     const std::size_t at_once = std::clamp<std::size_t>(most_numbers / group, 1, count);
     for (std::uint64_t point = 0; point < about_.size / group; ++point) {
-      const std::string values = about_.by_draws() ? point_cells(point) : std::string(about_.paths.size(), ',');
+      const CaseValues shared = about_.by_draws() ? point_values(point) : CaseValues(about_.paths.size());
+      const std::string values = point_cells(shared), title = title_of_point(about_.paths, shared);
       for (std::size_t first = 0; first < count; first += at_once) {
         auto all = samples(point * group, (point + 1) * group, about_.columns.size() + first,
                            std::min(at_once, count - first));
@@ -232,7 +242,7 @@ class Collector {
           for (std::size_t p = 0; p < shares_of_histories.size(); ++p)
             line += shown.empty() ? "," : fmt::format(",{}", shown[p]);
           table.line(line);
-          if (!shown.empty()) picture.add(point, values, name, t, shown);
+          if (!shown.empty()) picture.add(point, title, name, t, shown);
         }
       }
     }
@@ -251,7 +261,7 @@ class Collector {
         const double at = result->numbers.at(c), difference = at - base->numbers.at(c);
         if (!std::isfinite(difference)) continue;
         for (std::size_t a = 0; a < about_.paths.size(); ++a)
-          if (result->values.at(a).kind() != Value::Kind::null)
+          if (result->values.at(a))
             table.line(fmt::format("{},{},{},{},{}", csv_text(about_.columns[c]), csv_text(about_.paths[a]),
                                    cell(result->values[a]), at, difference));
       }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "withy/campaign/cases.hpp"
+#include "withy/campaign/overlaps.hpp"
 #include "withy/core/plugin/formula.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
@@ -29,26 +30,46 @@ std::optional<double> own_number(const study::Prepared& base, const std::string&
   return number_at(base.scene.source, path);
 }
 
-/// Why a name cannot be used; empty where it can.
-std::string name_trouble(const Plan& plan, const std::string& name, int axis) {
-  const bool own = axis < 0 || plan.design == Design::one_at_a_time;
-  if (own && !own_number(*plan.base, name))
-    return fmt::format("{} {} a number of the scene", in_quotes(name), axis < 0 ? "neither varies nor is" : "is not");
-  if (axis < 0) return {};
-  const Axis& varied = plan.axes[static_cast<std::size_t>(axis)];
+/// Why a name that is no path of what varies cannot be used; empty where it can. Its own path stands for the scene's
+/// number there: a formula may scale it.
+std::string scene_name_trouble(const Plan& plan, const Derived& derived, const std::string& name) {
+  for (const std::string& path : varied_paths(plan)) {
+    if (path != derived.path && path == name)
+      return fmt::format("{} is derived behind it: give that before", in_quotes(name));
+    if (is_within(name, path))
+      return fmt::format("{} is a part of {}, so that cases have other numbers there: vary or derive it by itself",
+                         in_quotes(name), in_quotes(path));
+  }
+  if (own_number(*plan.base, name)) return {};
+  return fmt::format("{} neither varies nor is a number of the scene", in_quotes(name));
+}
+
+/// Why a name cannot be used; empty where it can. \param place among varied_paths(); −1: none of them
+std::string name_trouble(const Plan& plan, const Derived& derived, const std::string& name, int place) {
+  if (place < 0) return scene_name_trouble(plan, derived, name);
+  const auto index = static_cast<std::size_t>(place);
+  if (index >= plan.axes.size()) return {};
+  if (plan.design == Design::one_at_a_time && !own_number(*plan.base, name))
+    return in_quotes(name) + " is not a number of the scene";
+  const Axis& varied = plan.axes[index];
   if (varied.drawn() || !varied.levels.numbers.empty()) return {};
   return fmt::format("{} varies, but not as plain numbers", in_quotes(name));
 }
 
 }  // namespace
 
-std::optional<double> number_at(const Value& source, const std::string& path) {
-  const Value* at = &source;
+const Value* value_at(const Value& whole, const std::string& path) {
+  const Value* at = &whole;
   for (std::size_t start = 0; at != nullptr && start <= path.size();) {
     const std::size_t stop = std::min(path.find('.', start), path.size());
     at = part_of(*at, path.substr(start, stop - start));
     start = stop + 1;
   }
+  return at;
+}
+
+std::optional<double> number_at(const Value& source, const std::string& path) {
+  const Value* at = value_at(source, path);
   if (at == nullptr || at->kind() != Value::Kind::number) return {};
   return at->number();
 }
@@ -63,8 +84,8 @@ std::vector<std::string> varied_paths(const Plan& plan) {
 void read_derived(const Value& given, const PlanReader& reader, Plan& plan) {
   if (given.kind() != Value::Kind::map)
     return reader.error(given.place(), fmt::format("got {}; need a map of paths to formulas", shown(given)));
-  const std::vector<std::string> varied = varied_paths(plan);
   for (const auto& [path, value] : given.members()) {
+    const std::vector<std::string> varied = varied_paths(plan);
     const auto formula = reader.text(value);
     if (!formula) continue;
     if (std::find(varied.begin(), varied.end(), path) != varied.end())
@@ -73,8 +94,8 @@ void read_derived(const Value& given, const PlanReader& reader, Plan& plan) {
       Derived d{path, *formula, value.place(), {}};
       const Formula parsed(*formula);
       for (const std::string& name : parsed.names()) {
-        const auto axis = std::find(varied.begin(), varied.end(), name);
-        d.names.emplace_back(name, axis == varied.end() ? -1 : static_cast<int>(axis - varied.begin()));
+        const auto at = std::find(varied.begin(), varied.end(), name);
+        d.names.emplace_back(name, at == varied.end() ? -1 : static_cast<int>(at - varied.begin()));
       }
       plan.derived.push_back(std::move(d));
     } catch (const std::invalid_argument& e) {
@@ -85,15 +106,15 @@ void read_derived(const Value& given, const PlanReader& reader, Plan& plan) {
 
 void check_derived(const Plan& plan, Registry& registry, Problems& problems) {
   for (const Derived& d : plan.derived)
-    for (const auto& [name, axis] : d.names)
-      if (const std::string why = name_trouble(plan, name, axis); !why.empty()) problems.of_plan().error(d.place, why);
+    for (const auto& [name, at] : d.names)
+      if (const std::string why = name_trouble(plan, d, name, at); !why.empty()) problems.of_plan().error(d.place, why);
   if (!problems.none() || plan.derived.empty()) return;
-  const std::vector<Value> first = Cases(plan).values(0);
+  const CaseValues first = Cases(plan).values(0);
   const std::vector<std::string> paths = varied_paths(plan);
   SceneValues values = plan.base->values;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const Place& place = i < plan.axes.size() ? plan.axes[i].place : plan.derived[i - plan.axes.size()].place;
-    if (first[i].kind() != Value::Kind::null) values.set(paths[i], first[i], origin_of(plan.file, place));
+    if (first[i]) values.set(paths[i], *first[i], origin_of(plan.file, place));
   }
   try {
     static_cast<void>(make_scene(values, registry));
@@ -102,12 +123,11 @@ void check_derived(const Plan& plan, Registry& registry, Problems& problems) {
   }
 }
 
-double value_of(const Derived& derived, const study::Prepared& base, const std::vector<Value>& values) {
+double value_of(const Derived& derived, const study::Prepared& base, const CaseValues& values) {
   std::vector<double> named;
-  for (const auto& [name, axis] : derived.names) {
-    const Value* varied = axis < 0 ? nullptr : &values[static_cast<std::size_t>(axis)];
-    named.push_back(varied != nullptr && varied->kind() == Value::Kind::number ? varied->number()
-                                                                               : *own_number(base, name));
+  for (const auto& [name, at] : derived.names) {
+    const std::optional<Value> varied = at < 0 ? std::nullopt : values[static_cast<std::size_t>(at)];
+    named.push_back(varied ? varied->number() : own_number(base, name).value());
   }
   return Formula(derived.formula)(named);
 }

@@ -11,14 +11,17 @@
 
 namespace withy::campaign {
 
-/// Reads `derived` of a plan whose axes are known; what is wrong goes to the reader's diagnostics.
+/// Reads `derived` of a plan whose axes are known, in its order: formulas may name what is derived before them. What is
+/// wrong goes to the reader's diagnostics.
 void read_derived(const Value& given, const PlanReader& reader, Plan& plan);
 /// Whether every name is a number, and whether the scene takes what the first case derives.
 void check_derived(const Plan& plan, Registry& registry, Problems& problems);
 
-/// \param values of the axes; null where the scene's own stays
-double value_of(const Derived& derived, const study::Prepared& base, const std::vector<Value>& values);
+/// \param values of the axes, and of what is derived before it
+double value_of(const Derived& derived, const study::Prepared& base, const CaseValues& values);
 
+/// What stands at a path in a value, as "0.mass"; null where nothing does.
+const Value* value_at(const Value& whole, const std::string& path);
 /// The number at a path of the checked values of a scene, in SI units; nothing where there is none.
 std::optional<double> number_at(const Value& source, const std::string& path);
 

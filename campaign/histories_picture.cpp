@@ -36,19 +36,29 @@ bool narrow(const Panel& panel) {
 
 }  // namespace
 
+std::string title_of_point(const std::vector<std::string>& paths, const CaseValues& values) {
+  std::string title;
+  for (std::size_t a = 0; a < paths.size(); ++a) {
+    if (!values[a]) continue;
+    const Value& value = *values[a];
+    title += fmt::format("{}{} = ", title.empty() ? "" : ", ", paths[a]);
+    title += value.kind() == Value::Kind::number ? fmt::format("{:.6g}", value.number())
+             : value.kind() == Value::Kind::null ? "null"
+                                                 : value.text();
+  }
+  return title;
+}
+
 HistoriesPicture::HistoriesPicture(std::string title)
     : picture_{std::move(title), {"median", "25 and 75 %", "5 and 95 %", "least and greatest"}, {}} {}
 
-void HistoriesPicture::add(std::uint64_t point, const std::string& values, const std::string& name, double t,
+void HistoriesPicture::add(std::uint64_t point, const std::string& at, const std::string& name, double t,
                            std::span<const double> numbers) {
   if (const std::string place = fmt::format("{} {}", point, name); place != last_) {
     last_ = place;
     ++asked_;
     full_ = picture_.panels.size() == most_panels;
     if (full_) return;
-    std::string at;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (values[i] != ',') at += (i > 0 && values[i - 1] == ',' && !at.empty() ? ", " : "") + values.substr(i, 1);
     Panel panel{"t [s]", name + (at.empty() ? "" : " at " + at), {numbers[0], numbers[0]}, {}};
     panel.x_range = {t, t};
     for (const std::size_t pen : pens) panel.curves.emplace_back().pen = pen;

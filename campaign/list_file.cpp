@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <system_error>
 
 #include "withy/scene/csv_rows.hpp"
@@ -24,7 +25,38 @@ std::string text_of(const std::string& file) {
   }
 }
 
+/// The names in a row of columns, each behind its path; empty where it has none.
+std::string names_in(const std::vector<const Axis*>& columns, std::size_t row) {
+  std::string names;
+  for (const Axis* column : columns) {
+    const Value value = column->levels.at(row);
+    if (value.kind() == Value::Kind::text && !read_any_quantity(value.text()).value)
+      names += column->path + '\n' + value.text() + '\n';
+  }
+  return names;
+}
+
+TrialRow row_of(const std::vector<const Axis*>& columns, std::size_t row) {
+  TrialRow values;
+  for (const Axis* column : columns) values.emplace_back(column->path, column->levels.at(row));
+  return values;
+}
+
 }  // namespace
+
+std::vector<TrialRow> rows_of_names(const std::vector<Axis>& axes, const std::map<std::string, std::size_t>& grids) {
+  std::vector<TrialRow> rows;
+  for (const auto& [file, grid] : grids) {
+    std::vector<const Axis*> columns;
+    for (const Axis& axis : axes)
+      if (!axis.drawn() && axis.grid == grid) columns.push_back(&axis);
+    if (columns.empty()) continue;
+    std::set<std::string> known{"", names_in(columns, 0)};
+    for (std::size_t row = 1; row < columns.front()->levels.size(); ++row)
+      if (known.insert(names_in(columns, row)).second) rows.push_back(row_of(columns, row));
+  }
+  return rows;
+}
 
 ListColumn read_list_column(const std::string& file, const std::string& column, bool named) {
   const std::string text = text_of(file);

@@ -13,6 +13,7 @@
 #include "withy/campaign/derived.hpp"
 #include "withy/campaign/kept.hpp"
 #include "withy/campaign/list_file.hpp"
+#include "withy/campaign/overlaps.hpp"
 #include "withy/campaign/plan_reader.hpp"
 #include "withy/campaign/random.hpp"
 #include "withy/campaign/si_levels.hpp"
@@ -54,6 +55,7 @@ class PlanBuilder {
     read_axes();
     plan_.seed = reader_.whole(find("seed"), 0, 0x1p53, 0);
     if (const Value* given = find("derived")) read_derived(*given, reader_, plan_);
+    check_overlaps(plan_, reader_);
     if (const Value* given = find("correlation")) read_correlation(*given, reader_, plan_);
     plan_.stop_on_failure = reader_.choice(find("failures"), keys::failures).value_or(0) == 1;
     plan_.lanes = reader_.choice(find("evaluation"), keys::evaluations).value_or(0) == 1;
@@ -63,7 +65,9 @@ class PlanBuilder {
       if (const Value* history = keep->find("history")) read_history(*history);
     }
     std::optional<SceneValues> base = read_scene();
-    if (base) plan_.sources = try_values(*base, trials_, plan_.file, registry_, problems_);
+    if (base)
+      plan_.sources =
+          try_values(*base, trials_, rows_of_names(plan_.axes, grid_of_file_), plan_.file, registry_, problems_);
     const bool good = problems_.none();
     if (base && good) use_si(plan_, *base, registry_);
     if (base) plan_.base = prepared_base(std::move(*base), registry_, problems_);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +25,10 @@ struct Levels {
   [[nodiscard]] std::size_t size() const { return numbers.empty() ? values.size() : numbers.size(); }
   [[nodiscard]] Value at(std::size_t i) const { return numbers.empty() ? values[i] : Value(numbers[i]); }
 };
+
+/// What a case sets: of each axis, then of each path that is derived. Nothing where the scene's own stays; null where
+/// what the scene says is taken away.
+using CaseValues = std::vector<std::optional<Value>>;
 
 /// A value of the scene that varies.
 struct Axis {
@@ -48,7 +53,8 @@ enum class Design {
 struct Derived {
   std::string path, formula;
   Place place;  ///< in the plan
-  /// Those of the formula, in its order: the axis of that path, or −1 where it is the scene's own value.
+  /// Those of the formula, in its order: index of that path among varied_paths(), or −1 where it is the scene's own
+  /// value.
   std::vector<std::pair<std::string, int>> names;
 };
 

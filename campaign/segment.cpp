@@ -69,7 +69,34 @@ void put_text(std::string& bytes, std::string_view text) {
   bytes += text;
 }
 
-enum class Cell : std::uint8_t { none, number, text };
+enum class Cell : std::uint8_t { none, number, text, null };
+
+void put_value(std::string& bytes, const std::optional<Value>& value) {
+  if (!value) return put(bytes, Cell::none);
+  switch (value->kind()) {
+    case Value::Kind::null:
+      return put(bytes, Cell::null);
+    case Value::Kind::number:
+      put(bytes, Cell::number);
+      return put(bytes, value->number());
+    default:
+      put(bytes, Cell::text);
+      put_text(bytes, value->kind() == Value::Kind::text ? value->text() : value_json(*value).dump());
+  }
+}
+
+std::optional<Value> take_value(Parts& parts) {
+  switch (parts.take<Cell>()) {
+    case Cell::none:
+      return {};
+    case Cell::null:
+      return Value();
+    case Cell::number:
+      return Value(parts.take<double>());
+    default:
+      return Value(parts.text());
+  }
+}
 
 std::uint32_t checksum(std::uint32_t length, std::string_view record) {
   boost::crc_32_type crc;
@@ -108,13 +135,7 @@ std::string encode(const CaseResult& result) {
   put(bytes, known == statuses.end() ? unknown_status : static_cast<std::uint8_t>(known - statuses.begin()));
   put_text(bytes, std::string_view(result.message).substr(0, most_message));
   put(bytes, static_cast<std::uint32_t>(result.values.size()));
-  for (const Value& value : result.values) {
-    const bool number = value.kind() == Value::Kind::number;
-    put(bytes, value.kind() == Value::Kind::null ? Cell::none : number ? Cell::number : Cell::text);
-    if (number) put(bytes, value.number());
-    if (!number && value.kind() != Value::Kind::null)
-      put_text(bytes, value.kind() == Value::Kind::text ? value.text() : value_json(value).dump());
-  }
+  for (const std::optional<Value>& value : result.values) put_value(bytes, value);
   put(bytes, static_cast<std::uint32_t>(result.numbers.size()));
   for (const double x : result.numbers) put(bytes, x);
   return bytes;
@@ -130,11 +151,7 @@ std::optional<CaseResult> decode(std::string_view bytes) {
   result.status = statuses.at(status);
   result.message = parts.text();
   for (auto left = parts.take<std::uint32_t>(); left > 0 && parts.good; --left) {
-    const auto kind = parts.take<Cell>();
-    if (kind == Cell::number)
-      result.values.emplace_back(parts.take<double>());
-    else
-      result.values.push_back(kind == Cell::none ? Value() : Value(parts.text()));
+    result.values.push_back(take_value(parts));
   }
   for (auto left = parts.take<std::uint32_t>(); left > 0 && parts.good; --left)
     result.numbers.push_back(parts.take<double>());

@@ -181,7 +181,11 @@ StoreDescription read_description(const std::filesystem::path& store) {
 Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
     : path_(std::move(path)), about_(description_of(plan)) {
   const auto kept = described(path_);
-  if (kept && kept->fingerprint == about_.fingerprint && !anew) return;
+  if (kept && kept->fingerprint == about_.fingerprint && !anew) {
+    // The plan may have another file, title or plugins' folders by now: commands and pages name those of today.
+    if (text_of(*kept) != text_of(about_)) write_description(path_, about_);
+    return;
+  }
   const char* advice = "give another folder, or --force to begin anew";
   if (const auto segments = segments_of(path_); !anew && !kept && !segments.empty()) {
     // Whose the cases are stands in the segments too, and the plan says the rest.

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "withy/campaign/estimates.hpp"
+#include "withy/campaign/random.hpp"
 #include "withy/campaign/store.hpp"
 #include "withy/results/csv.hpp"
 #include "withy/results/report/report_page.hpp"
@@ -144,7 +145,11 @@ Json envelope_json(const Numbers& axis, const Levels& levels, const Numbers& res
 class Page {
  public:
   Page(std::filesystem::path store, const Collected& collected)
-      : store_(std::move(store)), collected_(collected), about_(read_description(store_)) {}
+      : store_(std::move(store)), collected_(collected), about_(read_description(store_)) {
+    const std::size_t columns = about_.paths.size() + about_.derived.size() + about_.columns.size();
+    counted_ = std::min<std::uint64_t>(collected_.cases, most_outputs_shown / std::max<std::size_t>(1, columns));
+    shown_ = std::min<std::uint64_t>(counted_, most_rows);
+  }
 
   Json json() {
     read_cases();
@@ -156,12 +161,12 @@ class Page {
                {{"value", collected_.failed_share.value},
                 {"low", collected_.failed_share.low},
                 {"high", collected_.failed_share.high}}},
-              {"counted_every", counted_every()},
+              {"counted", counted_},
               {"columns", Json::array()}};
     for (const Numbers& column : columns_) page["columns"].push_back(column_json(column));
     page["envelopes"] = envelopes();
     page["envelopes_in_all"] = envelopes_;
-    page["sample"] = {{"every", shown_every()}, {"rows", std::move(sample_)}};
+    page["sample"] = {{"of", collected_.cases}, {"most", shown_}, {"rows", std::move(sample_)}};
     if (collected_.statistics) page["statistics"] = table_json(store_ / "statistics.csv");
     if (collected_.indices) page["indices"] = table_json(store_ / "indices.csv");
     if (collected_.histories) page["histories"] = histories();
@@ -171,27 +176,21 @@ class Page {
   }
 
  private:
-  /// Of so many cases one is counted, and one of these shown whole.
-  [[nodiscard]] std::size_t counted_every() const {
-    const std::size_t numbers =
-        collected_.cases * (about_.paths.size() + about_.derived.size() + about_.columns.size());
-    return std::max<std::size_t>(1, (numbers + most_outputs_shown - 1) / most_outputs_shown);
-  }
-  [[nodiscard]] std::size_t shown_every() const {
-    const std::size_t counted = counted_every(), step = most_rows * counted;
-    return counted * std::max<std::size_t>(1, (collected_.cases + step - 1) / step);
-  }
+  /// Where a case comes in a random order of all. Every so many cases in the order of the plan would be those of one
+  /// level of a grid, where their number and that of levels or draws have a factor in common.
+  [[nodiscard]] std::uint64_t order_of(std::uint64_t index) const { return permuted(key_, index, collected_.cases); }
 
   void read_cases() {
-    std::size_t row = 0;
+    std::uint64_t row = 0;
     const std::size_t varied = about_.paths.size() + about_.derived.size();
     read_rows(store_ / "table.csv", [&](const Cells& cells) {
       if (row++ == 0) {
         for (std::size_t c = 2; c < cells.size(); ++c) columns_.push_back({cells[c], c - 2 >= varied, true, {}});
         return;
       }
-      if ((row - 2) % counted_every() != 0) return;
-      const bool shown = (row - 2) % shown_every() == 0 && cells[1] != "missing";
+      const std::uint64_t order = order_of(row - 2);
+      if (order >= counted_) return;
+      const bool shown = order < shown_ && cells[1] != "missing";
       Json values = Json::array();
       for (std::size_t c = 0; c < columns_.size(); ++c) {
         const std::optional<double> number = plain_number(cells[c + 2]);
@@ -261,6 +260,8 @@ class Page {
   std::filesystem::path store_;
   const Collected& collected_;
   StoreDescription about_;
+  Key key_ = Key(0)["page"];
+  std::uint64_t counted_ = 0, shown_ = 0;  ///< cases that figures count, and of these those that are shown whole
   std::vector<Numbers> columns_;
   std::size_t envelopes_ = 0, histories_ = 0;  ///< that there are, on the page or not
   std::string last_history_;                   ///< its point and its result

@@ -9,17 +9,30 @@
 namespace withy::campaign {
 namespace {
 
+/// Makes a scene for what it is made from. \throws SceneError
+void add_sources(const SceneValues& values, Registry& registry, SceneSources& sources) {
+  const Scene scene = make_scene(values, registry);
+  for (const FileUsed& file : scene.sources.files) sources.add(file);
+  for (const PluginUsed& plugin : scene.sources.plugins) sources.add(plugin);
+}
+
 /// Makes a scene for its problems; false where there are any.
 bool make(const SceneValues& values, Registry& registry, Problems& problems, SceneSources& sources) {
   try {
-    const Scene scene = make_scene(values, registry);
-    for (const FileUsed& file : scene.sources.files) sources.add(file);
-    for (const PluginUsed& plugin : scene.sources.plugins) sources.add(plugin);
+    add_sources(values, registry, sources);
     return true;
   } catch (const SceneError& e) {
     problems.add(e, values);
     return false;
   }
+}
+
+void try_row(SceneValues values, const TrialRow& row, const std::string& plan, Registry& registry,
+             SceneSources& sources) try {
+  for (const auto& [path, value] : row) values.set(path, value, plan);
+  add_sources(values, registry, sources);
+} catch (const SceneError&) {
+  // Its cases say what is wrong with them.
 }
 
 }  // namespace
@@ -49,8 +62,8 @@ void Problems::raise() const {
   throw SceneError(plan_, std::move(all), origins_);
 }
 
-SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trials, const std::string& plan,
-                        Registry& registry, Problems& problems) {
+SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trials, const std::vector<TrialRow>& rows,
+                        const std::string& plan, Registry& registry, Problems& problems) {
   SceneSources sources;
   if (!make(base, registry, problems, sources)) return sources;
   const auto put = [&](SceneValues& values, const Trial& trial) {
@@ -70,6 +83,7 @@ SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trial
     put(values, *trial);
     make(values, registry, problems, sources);
   }
+  for (const TrialRow& row : rows) try_row(first, row, plan, registry, sources);
   return sources;
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "withy/campaign/plan.hpp"
@@ -17,6 +18,9 @@ struct Trial {
   std::string path;
   Value value;  ///< with its place in the plan
 };
+
+/// Values that cases set together: a row of a list, by their paths.
+using TrialRow = std::vector<std::pair<std::string, Value>>;
 
 /// Problems of a plan and of scenes made from it, told together.
 class Problems {
@@ -39,10 +43,11 @@ class Problems {
 /// "plan.yaml:7:3".
 std::string origin_of(const std::string& file, const Place& place);
 
-/// Makes the scene, then again with the first value of every axis, then with each other one in its place.
+/// Makes the scene, then again with the first value of every axis, then with each other one in its place, then with
+/// each of the rows. What is wrong with a row is no problem of the plan: its cases are refused.
 /// \returns what all of these scenes were made from
-SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trials, const std::string& plan,
-                        Registry& registry, Problems& problems);
+SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trials, const std::vector<TrialRow>& rows,
+                        const std::string& plan, Registry& registry, Problems& problems);
 
 /// The scene without what varies: names are looked up in it, whatever else is wrong with the plan. Null where it cannot
 /// be and something is said already, which may be that. \throws SceneError, InputError where nothing is said yet

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "urdf.hpp"
+#include "withy/core/model/closing.hpp"
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/model.hpp"
 
 namespace withy::exchange {
@@ -43,7 +46,15 @@ Pose undeformed(const Frame& frame) { return Pose{Matrix3::Identity(), frame.sec
 
 class UrdfWriter {
  public:
-  explicit UrdfWriter(const Model& model) : model_(model) {}
+  explicit UrdfWriter(const Model& model) : model_(model) {
+    for (const BodyNode& body : model.bodies()) links_.insert(body.name);
+    for (const HingeNode& hinge : model.hinges()) joints_.insert(hinge.name);
+    const EventBook book(model);
+    if (!book.any()) return;
+    for (const ActingEvent& event : book.plan().events)
+      for (const EventAction& action : event.actions)
+        if (action.releases) welds_.insert(action.index);
+  }
 
   Urdf write(const std::string& name) {
     out_.text = fmt::format(
@@ -55,16 +66,36 @@ class UrdfWriter {
       joints(model_.hinges()[i]);
     }
     out_.text += "</robot>\n";
-    const auto left_out = [&](std::size_t count, const char* what) {
-      if (count > 0) out_.remarks.push_back(fmt::format("{} {} left out", count, what));
-    };
-    left_out(model_.loads().size(), "of the scene's loads");
-    left_out(model_.motions().size(), "of the scene's motions");
-    if (!model_.gravity().isZero(0)) out_.remarks.push_back("gravity is left out: URDF has none");
+    tell_what_acts();
     return std::move(out_);
   }
 
  private:
+  void tell_what_acts() {
+    const auto left_out = [&](std::size_t count, const char* what) {
+      if (count > 0) out_.remarks.push_back(fmt::format("{} {} left out", count, what));
+    };
+    const EventBook book(model_);
+    // Loops and the states of events stand among the loads of a model.
+    const std::vector<const LoopClosure*> loops = loops_of(model_);
+    left_out(model_.loads().size() - loops.size() - (book.any() ? 1 : 0), "of the scene's loads");
+    left_out(model_.motions().size(), "of the scene's motions");
+    for (const LoopClosure* loop : loops)
+      out_.remarks.push_back(
+          fmt::format("constraint '{}' is left out, and its loop is open: URDF has trees alone", loop->name()));
+    if (book.any()) tell_events(book.plan());
+    if (!model_.gravity().isZero(0)) out_.remarks.push_back("gravity is left out: URDF has none");
+  }
+
+  void tell_events(const EventPlan& plan) {
+    for (const ActingEvent& event : plan.events)
+      out_.remarks.push_back(fmt::format("event '{}' is left out: URDF has none", event.name));
+    for (const std::size_t hinge : plan.configurations.at(static_cast<std::size_t>(plan.start)))
+      if (!welds_.contains(hinge))
+        out_.remarks.push_back(
+            fmt::format("hinge '{}' is held at first; its joint is free to move", model_.hinges()[hinge].name));
+  }
+
   /// The frame of a body's link, that of its hinge on the child's side, in the body's axes.
   [[nodiscard]] Pose link_frame(int body) const {
     const HingeNode& hinge = model_.hinges()[static_cast<std::size_t>(body)];
@@ -122,7 +153,8 @@ class UrdfWriter {
       out_.remarks.push_back(fmt::format("the reflected inertia of hinge '{}' is left out: URDF has none", hinge.name));
     const auto kernel = hinge.hinge->kernel();
     using Kind = HingeKernel::Kind;
-    if (kernel && kernel->kind == Kind::weld) return joint(hinge.name, "fixed", parent, child, origin, nullptr);
+    if (welds_.contains(static_cast<std::size_t>(hinge.child)) || (kernel && kernel->kind == Kind::weld))
+      return joint(hinge.name, "fixed", parent, child, origin, nullptr);
     if (kernel && kernel->kind == Kind::revolute)
       return joint(hinge.name, "continuous", parent, child, origin, &kernel->axis);
     if (kernel && kernel->kind == Kind::prismatic)
@@ -139,19 +171,27 @@ class UrdfWriter {
     hinge.hinge->reference(x);
     HingeMotion motion;
     hinge.hinge->motion(x, rates, motion);
-    const std::string between = hinge.name + "_between";
+    const std::string between = own(links_, hinge.name + "_between");
     out_.text += fmt::format("  <link name=\"{}\"/>\n", escaped(between));
     for (int k = 0; k < 2; ++k) {
       const Vector3 angular = motion.H.col(k).head<3>(), linear = motion.H.col(k).tail<3>();
       const bool turns = !angular.isZero(0);
       const Vector3 axis = turns ? angular : linear;
-      joint(fmt::format("{}_{}", hinge.name, k), turns ? "continuous" : "prismatic", k == 0 ? parent : between,
-            k == 0 ? between : child, k == 0 ? origin : Pose{}, &axis);
+      joint(own(joints_, fmt::format("{}_{}", hinge.name, k)), turns ? "continuous" : "prismatic",
+            k == 0 ? parent : between, k == 0 ? between : child, k == 0 ? origin : Pose{}, &axis);
     }
+  }
+
+  /// A name that no other has, which is taken by that.
+  static std::string own(std::set<std::string>& taken, std::string name) {
+    while (!taken.insert(name).second) name += '_';
+    return name;
   }
 
   const Model& model_;
   Urdf out_;
+  std::set<std::size_t> welds_;  ///< hinges of the scene that events let go of: the model's are free, and held
+  std::set<std::string> links_ = {"world"}, joints_;  ///< names that are taken
 };
 
 }  // namespace

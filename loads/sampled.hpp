@@ -3,11 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "withy/core/plugin/digital_part.hpp"
 #include "withy/core/plugin/parameters.hpp"
+#include "withy/core/simulation/same_instant.hpp"
 #include "withy/loads/tracking.hpp"
 
 namespace withy {
@@ -25,11 +28,18 @@ inline double sample_period(const Value& p) {
   return period == nullptr ? 0.0 : period->number();
 }
 
-/// A controller of hinges with a sample-and-hold. Its discrete states are the efforts on the coordinates it follows.
-class Sampled final : public BoundLoad, public DiscretePart, public LoadNumbers {
+/// Whether an instant of the clock of this period [s] falls on a time [s].
+inline bool at_sample(double t, double period) noexcept { return same_instant(std::round(t / period) * period, t); }
+
+/// A controller of hinges with a sample-and-hold. Its discrete states are what it told at the last sample, the efforts
+/// on the coordinates it follows, and whether it has begun.
+class Sampled final : public BoundLoad, public DiscretePart, public DigitalPart, public LoadNumbers {
  public:
   Sampled(std::unique_ptr<TrackingLoad> controller, double period)
-      : controller_(std::move(controller)), period_(period) {}
+      : controller_(std::move(controller)),
+        axes_(controller_->axes().size()),
+        told_(controller_->numbers().size() - axes_),
+        period_(period) {}
 
   std::size_t scratch() const override { return controller_->scratch(); }
   void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
@@ -45,25 +55,38 @@ class Sampled final : public BoundLoad, public DiscretePart, public LoadNumbers 
   void begin(State& state) const override { controller_->begin(state); }
 
   std::vector<SensorColumn> numbers() const override { return controller_->numbers(); }
-  /// The efforts that are held, the rest of the state as it is.
+  /// The efforts that are held, errors and margins of the last sample.
   void show(const LoadView& view, std::span<double> values) const noexcept override {
-    controller_->show(view, values);
-    std::copy(view.discrete.begin(), view.discrete.end(), values.begin());
+    const std::span<const double> efforts = view.discrete.subspan(told_, axes_);
+    std::copy(efforts.begin(), efforts.end(), values.begin());
+    std::copy_n(view.discrete.begin(), told_, values.begin() + static_cast<std::ptrdiff_t>(axes_));
+    controller_->finish(values.subspan(axes_));
   }
 
-  std::size_t states() const override { return controller_->axes().size(); }
+  std::size_t states() const override { return told_ + axes_ + 1; }
   double period() const override { return period_; }
-  void renew(double t, std::span<const double> positions, std::span<const double> speeds, const Crossing& /*crossing*/,
+  void renew(double t, std::span<const double> positions, std::span<const double> speeds, const Crossing& crossing,
              std::span<double> discrete, std::span<double> scratch) const noexcept override {
-    controller_->commands(t, positions, speeds, discrete, scratch);
+    if (crossing.begins && !at_sample(t, period_)) return pass_idle(discrete);  // it waits for its clock
+    controller_->commands(t, positions, speeds, discrete.subspan(told_, axes_), scratch);
+    controller_->tell(t, positions, speeds, discrete.first(told_));
+    discrete.back() = 1;
   }
+  void pass_idle(std::span<double> discrete) const noexcept override {
+    std::fill(discrete.begin(), discrete.end(), 0.0);
+  }
+  bool waits(std::span<const double> discrete) const override { return discrete.back() == 0; }
+  bool gives_steps() const override { return false; }
+  std::size_t told() const override { return told_; }
   void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
-    for (std::size_t i = 0; i < controller_->axes().size(); ++i) efforts[controller_->axes()[i].speed] += discrete[i];
+    for (std::size_t i = 0; i < axes_; ++i) efforts[controller_->axes()[i].speed] += discrete[told_ + i];
   }
 
  private:
   std::unique_ptr<TrackingLoad> controller_;
-  double period_;  ///< [s]
+  std::size_t axes_;  ///< count of coordinates that it follows
+  std::size_t told_;  ///< numbers beside the efforts
+  double period_;     ///< [s]
 };
 
 /// The controller itself where `period` is 0.

@@ -43,6 +43,12 @@ class TrackingLoad : public BoundLoad, public LoadNumbers, public CourseOfTime {
   virtual void commands(double t, std::span<const double> positions, std::span<const double> speeds,
                         std::span<double> values, std::span<double> scratch) const noexcept = 0;
   [[nodiscard]] const std::vector<FollowedAxis>& axes() const { return axes_; }
+  /// Sets the tracking error of each axis, then what is asked for on each that has a limit: smooth in the state. Of
+  /// these `finish` makes the numbers that stand behind the commands.
+  void tell(double t, std::span<const double> positions, std::span<const double> speeds,
+            std::span<double> values) const noexcept;
+  /// Makes margins of what is asked for.
+  void finish(std::span<double> values) const noexcept;
 
  protected:
   /// Adds `margin` to the numbers of the axes whose effort has a limit [N m, N]; infinite: none.
@@ -86,12 +92,25 @@ inline void TrackingLoad::add_limits(std::vector<double> limits) {
 inline void TrackingLoad::show(const LoadView& view, std::span<double> values) const noexcept {
   const std::size_t count = axes_.size();
   commands(view.t, view.positions(), view.speeds(), values.first(count), view.scratch);
-  for (std::size_t i = 0; i < count; ++i)
-    values[count + i] = at(axes_[i].trajectory, view.t).position - view.positions()[axes_[i].position];
-  std::size_t next = 2 * count;
+  tell(view.t, view.positions(), view.speeds(), values.subspan(count));
+  finish(values.subspan(count));
+}
+
+inline void TrackingLoad::tell(double t, std::span<const double> positions, std::span<const double> speeds,
+                               std::span<double> values) const noexcept {
+  std::size_t next = 0;
+  for (const FollowedAxis& axis : axes_) values[next++] = at(axis.trajectory, t).position - positions[axis.position];
   for (std::size_t i = 0; i < limits_.size(); ++i)
-    if (limits_[i] < std::numeric_limits<double>::infinity())
-      values[next++] = limits_[i] - std::abs(demand(i, view.t, view.positions(), view.speeds()));
+    if (limits_[i] < std::numeric_limits<double>::infinity()) values[next++] = demand(i, t, positions, speeds);
+}
+
+inline void TrackingLoad::finish(std::span<double> values) const noexcept {
+  std::size_t next = axes_.size();
+  for (const double limit : limits_) {
+    if (!(limit < std::numeric_limits<double>::infinity())) continue;
+    values[next] = limit - std::abs(values[next]);
+    ++next;
+  }
 }
 
 }  // namespace withy

@@ -12,13 +12,19 @@ namespace withy {
 
 /// A motion of equal blades as it is seen from where the rotor does not turn.
 struct BladeBranch {
-  std::string name;                         ///< "blade1.bending_z[1] forward"; of several of one name "… (2)"
+  std::string name;                         ///< of where it begins: "blade1.bending_z[1] forward"; of several "… (2)"
   std::vector<const study::NamedMode*> at;  ///< one a value of the sweep; null where the value has none
 };
 
-/// Of the modes that oscillate, at each value the `count` lowest, those of one name: the n-th of it at each value is a
-/// branch. In the order of their names; empty where no blades were seen. They point into `run`.
+/// The branches that were followed which at some value are among the `count` lowest or grow, in the order in which they
+/// begin; real exponents are of frequency zero. Rigid motions are left out; empty where no blades were seen. They point
+/// into `run`.
 std::vector<BladeBranch> blade_branches(const study::ModesOf& run, std::size_t count);
+
+/// Growth up to this may be rounding [1/s]: 1e-10 of the greatest |λ|.
+double growth_resolution(const study::BladeModes& seen);
+/// Whether a mode of these grows beyond that.
+bool grows(const study::BladeModes& seen, const study::NamedMode& mode);
 
 /// Equal blades that were seen; 0: none at any value.
 std::size_t blades_seen(const study::ModesOf& run);

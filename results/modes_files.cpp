@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -34,15 +35,18 @@ Json found_json(const study::ModesAt& at) {
   return j;
 }
 
-Json exponents_json(const std::vector<study::NamedMode>& modes) {
+/// \param branches of each mode along a sweep; empty: nobody followed them
+Json exponents_json(const std::vector<study::NamedMode>& modes, const std::vector<std::size_t>& branches = {}) {
   Json list = Json::array();
-  for (const study::NamedMode& m : modes) {
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const study::NamedMode& m = modes[i];
     Json lines = Json::array();
     for (const auto& [frequency, share] : m.lines) lines.push_back({{"frequency", frequency}, {"share", share}});
     list.push_back({{"exponent", {m.exponent.real(), m.exponent.imag()}},
                     {"dominated_by", m.dominated_by},
                     {"resolved", m.resolved},
                     {"lines", std::move(lines)}});
+    if (!branches.empty()) list.back()["branch"] = branches[i] + 1;
   }
   return list;
 }
@@ -62,9 +66,71 @@ Json turn_json(const study::TurningModes& turn) {
   if (turn.blades)
     j["multiblade"] = {{"blades", turn.blades->blades},
                        {"change", turn.blades->change},
-                       {"modes", exponents_json(turn.blades->modes)}};
+                       {"modes", exponents_json(turn.blades->modes, turn.blades->branches)}};
   if (!turn.blade_problem.empty()) j["blade_problem"] = turn.blade_problem;
   return j;
+}
+
+constexpr double growth_height = 160;
+
+void include_growth(Panel& growths, double growth) {
+  growths.y_range.first = std::min(growths.y_range.first, growth);
+  growths.y_range.second = std::max(growths.y_range.second, growth);
+}
+
+/// Both panels, the second where something grows. What decays by far faster than anything grows leaves the picture: the
+/// axis shows where growth begins.
+std::vector<Panel> with_growth(Panel frequencies, Panel growths) {
+  constexpr double far = 4;
+  std::vector<Panel> panels = {std::move(frequencies)};
+  auto& [least, greatest] = growths.y_range;
+  if (!(greatest > 0)) return panels;
+  least = std::max(least, -far * greatest);
+  panels.push_back(std::move(growths));
+  return panels;
+}
+
+/// A branch of equal blades, with gaps where it has no mode.
+struct BladeCurves {
+  Curve frequency, growth;
+};
+
+BladeCurves blade_curves(const study::ModesOf& run, const BladeBranch& branch, std::size_t pen) {
+  BladeCurves curves;
+  Curve& f = curves.frequency;
+  std::size_t next = 0;  // value that would go on without a gap
+  for (std::size_t k = 0; k < branch.at.size(); ++k) {
+    if (branch.at[k] == nullptr) continue;
+    const std::complex<double> exponent = branch.at[k]->exponent;
+    if (!f.x.empty() && k > next) f.behind_gaps.push_back(f.x.size());
+    next = k + 1;
+    f.x.push_back(run.points[k].value);
+    f.y.push_back(exponent.imag());
+    curves.growth.y.push_back(
+        std::abs(exponent.real()) > growth_resolution(*run.points[k].turn->blades) ? exponent.real() : 0.0);
+  }
+  f.pen = pen;
+  f.points = f.x.size() == 1;
+  Curve& g = curves.growth;
+  g.x = f.x, g.pen = f.pen, g.points = f.points, g.behind_gaps = f.behind_gaps;
+  return curves;
+}
+
+/// |slope · x| for x from `low` to `high`, where it is below `top`: one curve, or two that meet at zero.
+Curve multiple_of_rate(double low, double high, double slope, double top) {
+  Curve line;
+  if (!(slope > 0 && top > 0)) return line;
+  const double reach = top / slope;
+  const auto add = [&](double x) {
+    line.x.push_back(x);
+    line.y.push_back(std::abs(slope * x));
+  };
+  if (low < 0 && high > -reach) add(std::max(low, -reach));
+  if (low <= 0 && high >= 0) add(0);
+  if (low < 0 && high < 0 && high > -reach) add(high);
+  if (low > 0 && low < reach) add(low);
+  if (high > 0 && low < reach) add(std::min(high, reach));
+  return line;
 }
 
 }  // namespace
@@ -173,7 +239,7 @@ std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string
 std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const std::string& label,
                           std::size_t count) {
   Panel frequencies{label, "frequency [rad/s]", {0, 0}, {}, 420};
-  Panel growths{label, "growth [1/s]", {0, 0}, {}, 160};
+  Panel growths{label, "growth [1/s]", {0, 0}, {}, growth_height};
   std::vector<std::string> legend;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     // One formulation: a colour a branch, named after what dominates it at first. Several: a colour a formulation.
@@ -193,18 +259,16 @@ std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::st
         frequency.x.push_back(at.value);
         frequency.y.push_back(m.eigenvalue.imag());
         growth.x.push_back(at.value);
-        growth.y.push_back(study::unstable(at, m) ? m.growth() : 0.0);
+        growth.y.push_back(study::resolved_growth(at, m));
         frequencies.y_range.second = std::max(frequencies.y_range.second, frequency.y.back());
-        growths.y_range.second = std::max(growths.y_range.second, growth.y.back());
+        include_growth(growths, growth.y.back());
       }
       if (frequency.x.empty()) continue;
       frequencies.curves.push_back(std::move(frequency));
       growths.curves.push_back(std::move(growth));
     }
   }
-  std::vector<Panel> panels = {std::move(frequencies)};
-  if (growths.y_range.second > 0) panels.push_back(std::move(growths));
-  return svg_plot(title, legend, panels);
+  return svg_plot(title, legend, with_growth(std::move(frequencies), std::move(growths)));
 }
 
 Json modes_study_json(const std::string& scene, const study::Sweep& sweep, const study::ModesFound& found) {
@@ -227,16 +291,17 @@ bool sees_blades(const std::vector<study::ModesOf>& runs) {
 
 std::string blades_csv(const std::vector<study::ModesOf>& runs, const std::string& label) {
   std::string text =
-      "formulation," + label + ",mode,dominated_by,frequency[rad/s],frequency[Hz],damping_ratio,growth[1/s]\n";
+      "formulation," + label + ",mode,dominated_by,frequency[rad/s],frequency[Hz],damping_ratio,growth[1/s],branch\n";
   for (const study::ModesOf& run : runs) {
     for (const study::ModesAt& at : run.points) {
       if (!at.turn || !at.turn->blades) continue;
       for (std::size_t i = 0; i < at.turn->blades->modes.size(); ++i) {
         const study::NamedMode& m = at.turn->blades->modes[i];
         const double size = std::abs(m.exponent);
-        text += fmt::format("{},{},{},{},{},{},{},{}\n", run.formulation, at.value, i + 1, m.dominated_by,
+        text += fmt::format("{},{},{},{},{},{},{},{},{}\n", run.formulation, at.value, i + 1, m.dominated_by,
                             m.exponent.imag(), m.exponent.imag() / (2 * std::numbers::pi),
-                            size > 0 ? fmt::format("{}", -m.exponent.real() / size) : std::string(), m.exponent.real());
+                            size > 0 ? fmt::format("{}", -m.exponent.real() / size) : std::string(), m.exponent.real(),
+                            at.turn->blades->branches[i] + 1);
       }
     }
   }
@@ -246,39 +311,33 @@ std::string blades_csv(const std::vector<study::ModesOf>& runs, const std::strin
 std::string blades_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const study::Sweep& sweep,
                            std::size_t count) {
   Panel frequencies{swept_label(sweep), "frequency, from where the rotor does not turn [rad/s]", {0, 0}, {}, 420};
+  Panel growths{swept_label(sweep), "growth [1/s]", {0, 0}, {}, growth_height};
   std::vector<std::string> legend;
   std::size_t blades = 0;
-  double fastest = 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const study::ModesOf& run : runs) {
-    for (const study::ModesAt& at : run.points) fastest = std::max(fastest, at.value);
+    for (const study::ModesAt& at : run.points) low = std::min(low, at.value), high = std::max(high, at.value);
     blades = std::max(blades, blades_seen(run));
-    for (const auto& [name, seen] : blade_branches(run, count)) {
-      Curve curve;
-      for (std::size_t k = 0; k < seen.size(); ++k) {
-        if (seen[k] == nullptr) continue;
-        curve.x.push_back(run.points[k].value);
-        curve.y.push_back(seen[k]->exponent.imag());
-        frequencies.y_range.second = std::max(frequencies.y_range.second, curve.y.back());
-      }
-      curve.pen = legend.size();
-      curve.points = curve.x.size() == 1;
-      legend.push_back(runs.size() > 1 ? run.formulation + ", " + name : name);
-      frequencies.curves.push_back(std::move(curve));
+    for (const BladeBranch& branch : blade_branches(run, count)) {
+      BladeCurves curves = blade_curves(run, branch, legend.size());
+      for (const double y : curves.frequency.y) frequencies.y_range.second = std::max(frequencies.y_range.second, y);
+      for (const double y : curves.growth.y) include_growth(growths, y);
+      legend.push_back(runs.size() > 1 ? run.formulation + ", " + branch.name : branch.name);
+      frequencies.curves.push_back(std::move(curves.frequency));
+      growths.curves.push_back(std::move(curves.growth));
     }
   }
   if (!sweep.spun().empty()) {
     const double unit = sweep.unit.empty() ? 1 : read_any_quantity("1 " + sweep.unit).value.value_or(0);
     for (const std::size_t times : {std::size_t{1}, blades, 2 * blades}) {
-      const double least = std::max(fastest, 0.0) * unit * static_cast<double>(times);
-      if (!(least > 0)) continue;
-      const double end = std::min(1.0, frequencies.y_range.second / least);  // where the line leaves the picture
-      Curve line{{0, end * fastest}, {0, end * least}};
+      Curve line = multiple_of_rate(low, high, unit * static_cast<double>(times), frequencies.y_range.second);
+      if (line.x.size() < 2) continue;
       line.pen = legend.size();
       legend.push_back(times == 1 ? "once a turn" : fmt::format("{} times a turn", times));
       frequencies.curves.push_back(std::move(line));
     }
   }
-  return svg_plot(title, legend, {frequencies});
+  return svg_plot(title, legend, with_growth(std::move(frequencies), std::move(growths)));
 }
 
 void write_modes(const std::filesystem::path& folder, const std::vector<study::ModesOf>& runs, const Json& content,

@@ -20,7 +20,8 @@ nlohmann::ordered_json modes_json(const study::ModesOf& run);
 nlohmann::ordered_json against_json(const std::optional<study::AgainstNext>& against);
 /// A line a formulation, value and branch.
 std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string& label);
-/// Frequencies, and where something grows the rates of growth, over the value.
+/// Frequencies over the value, and where something grows the rates of growth and of decay, down to four times the
+/// greatest growth.
 std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const std::string& label,
                           std::size_t count);
 
@@ -28,8 +29,8 @@ std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::st
 bool sees_blades(const std::vector<study::ModesOf>& runs);
 /// The modes of equal blades seen from where the rotor does not turn: a line a formulation, value and mode.
 std::string blades_csv(const std::vector<study::ModesOf>& runs, const std::string& label);
-/// Their frequencies over the value, a curve a name; of a rotor's rate with those of one turn and of the passing
-/// blades.
+/// Their frequencies over the value, a curve a branch; of a rotor's rate with those of one turn and of the passing
+/// blades; growth as in modes_picture.
 std::string blades_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const study::Sweep& sweep,
                            std::size_t count);
 

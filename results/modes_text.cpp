@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "withy/results/blade_branches.hpp"
 #include "withy/results/text_table.hpp"
 
 namespace withy {
@@ -153,14 +154,12 @@ std::string turning_text(const study::TurningModes& turn, const std::string& lab
                         at, turn.floquet->stable ? "stable" : "unstable", turn.floquet->resolution,
                         exponents_text(turn.floquet->modes, turn.floquet->resolution));
   if (turn.blades) {
-    double greatest = 0;
-    for (const study::NamedMode& m : turn.blades->modes) greatest = std::max(greatest, std::abs(m.exponent));
     text += fmt::format("\nSeen from where the rotor does not turn{}, {} (multi-blade; {})\n\n{}", at,
                         fmt::join(turn.blades->blades, ", "),
                         turn.blades->change < 1e-9 ? std::string("constant over the turn")
                                                    : fmt::format("averaged over the turn, which leaves out {:.2g} %",
                                                                  100 * turn.blades->change),
-                        exponents_text(turn.blades->modes, 1e-10 * greatest));
+                        exponents_text(turn.blades->modes, growth_resolution(*turn.blades)));
   }
   return text;
 }

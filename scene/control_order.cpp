@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "withy/core/model/bound_sensor.hpp"
 #include "withy/core/model/columns.hpp"
@@ -15,14 +16,40 @@
 namespace withy {
 namespace {
 
-/// Adds the loads among the words of a text; a word ends before a dot.
-void add_words(const std::string& text, const std::set<std::string>& loads, std::set<std::string>& found) {
-  const auto of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
-  for (auto at = text.begin(); at != text.end();) {
-    const auto end = std::find_if_not(at, text.end(), of_word);
-    if (const std::string word(at, end); loads.contains(word)) found.insert(word);
-    at = end == text.end() ? end : std::next(end);
+/// What may be a signal in a formula: `servo`, `elbow.rate`, without the sign before it.
+std::vector<std::string> words_of(const std::string& formula) {
+  const auto of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; };
+  std::vector<std::string> words;
+  for (auto at = formula.begin(); at != formula.end();) {
+    const auto end = std::find_if_not(at, formula.end(), of_word);
+    if (end != at) words.emplace_back(at, end);
+    at = end == formula.end() ? end : std::next(end);
   }
+  return words;
+}
+
+/// What a checked load names as a signal, and where: under `of` and `schedule`, and in its formula.
+std::vector<std::pair<std::string, const Value*>> signals_of(const Value& load) {
+  std::vector<std::pair<std::string, const Value*>> all;
+  const auto text_at = [&](const char* key) {
+    const Value* given = load.find(key);
+    return given != nullptr && given->kind() == Value::Kind::text ? given : nullptr;
+  };
+  if (const Value* of = load.find("of"); of != nullptr && of->kind() == Value::Kind::list)
+    for (const Value& item : of->items()) all.emplace_back(item.text(), &item);
+  if (const Value* schedule = text_at("schedule")) all.emplace_back(schedule->text(), schedule);
+  if (const Value* formula = text_at("value"))
+    for (std::string& word : words_of(formula->text())) all.emplace_back(std::move(word), formula);
+  return all;
+}
+
+bool is_column_of_hinge(const Model& model, const std::string& name) {
+  const auto among = [&](const std::vector<Column>& columns) {
+    return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+  };
+  return std::any_of(model.hinges().begin(), model.hinges().end(), [&](const HingeNode& hinge) {
+    return among(coordinate_columns(hinge)) || among(rate_columns(hinge));
+  });
 }
 
 /// "a -> b -> a", beginning at a load that waits for others.
@@ -82,6 +109,19 @@ const Value* naming(const Value& value, const std::string& signal) {
   return nullptr;
 }
 
+/// What an input acts with, "N m" or "N"; empty of other loads.
+std::string unit_of_input(const Value& load, const SceneNames& names) {
+  const auto text = [&](const char* key) {
+    const Value* given = load.find(key);
+    return given != nullptr && given->kind() == Value::Kind::text ? given->text() : std::string();
+  };
+  if (text("type") != "input") return {};
+  if (text("hinge").empty()) return text("acts") == "torque" ? "N m" : "N";
+  const Value* component = load.find("component");
+  const double rate = component != nullptr && component->kind() == Value::Kind::number ? component->number() : 0;
+  return names.sliding.has(fmt::format("{}.{}", text("hinge"), rate)) ? "N" : "N m";
+}
+
 bool measures(const Value& load) {
   const Value* type = load.find("type");
   return load.has("of") || load.has("schedule") ||
@@ -102,15 +142,21 @@ void name_signals(const Document& document, Model* model, SceneNames& names, Reg
     for (const std::string& hinge : names.hinges.names()) names.signals.add(hinge);
   } else {
     for (const HingeNode& hinge : model->hinges()) {
-      for (const Column& c : coordinate_columns(hinge)) names.signals.add(c.name);
-      for (const Column& c : rate_columns(hinge)) names.signals.add(c.name);
+      for (const std::vector<Column>& columns : {coordinate_columns(hinge), rate_columns(hinge)}) {
+        for (const Column& c : columns) names.signals.add(c.name), names.units[c.name] = c.unit;
+      }
     }
+    for (const auto& [name, given] : loads)
+      if (const std::string unit = unit_of_input(given, names); !unit.empty()) names.units[name] = unit;
   }
   for (const char* key : {"outputs", "loads"})
     for (const auto& [name, given] : map_of(key).members()) names.signals.add(name);
   if (model != nullptr &&
       std::any_of(loads.begin(), loads.end(), [](const Value::Member& load) { return measures(load.second); }))
     model->set_measured(measurable(map_of("outputs"), *model, document, names, registry));
+  if (model != nullptr && model->measured() != nullptr)
+    for (const SensorNode& node : *model->measured())
+      for (const Column& c : columns_of(node)) names.units[c.name] = c.unit;
 }
 
 void give_outputs(Model& model, const std::vector<SensorNode>& outputs, const Checker& checker) {
@@ -162,20 +208,30 @@ void UnboundLoads::report(const Checker& checker, std::set<std::string>& refused
   }
 }
 
-std::set<std::string> needed_loads(const Value& load, const std::set<std::string>& loads) {
+std::set<std::string> needed_loads(const Value& load, const std::set<std::string>& loads, const Model* model) {
   std::set<std::string> found;
-  for (const char* key : {"of", "to"}) {
-    const Value* given = load.find(key);
-    if (given == nullptr || given->kind() != Value::Kind::list) continue;
-    for (const Value& item : given->items()) {
-      const std::string name = item.text().substr(0, item.text().find('.'));
-      if (loads.contains(name)) found.insert(name);
+  const auto add = [&](const std::string& named) {
+    const std::string name = named.substr(0, named.find('.'));
+    if (loads.contains(name)) found.insert(name);
+  };
+  for (const auto& [signal, place] : signals_of(load))
+    if (model == nullptr || !is_column_of_hinge(*model, signal)) add(signal);
+  if (const Value* to = load.find("to"); to != nullptr && to->kind() == Value::Kind::list)
+    for (const Value& item : to->items()) add(item.text());
+  return found;
+}
+
+void refuse_names_of_two(const Value& loads, const Model& model, const Checker& checker) {
+  for (const auto& [load, given] : loads.members()) {
+    std::set<std::string> told;
+    for (const auto& [signal, value] : signals_of(given)) {
+      const bool own = signal.substr(0, signal.find('.')) == load;  // no load measures itself
+      if (own || !is_of_hinge_and_load(model, signal) || !told.insert(signal).second) continue;
+      checker.diagnostics().error(value->place(), fmt::format("'{}' is a hinge and a load, and either can be measured: "
+                                                              "give the load another name",
+                                                              signal));
     }
   }
-  for (const char* key : {"value", "schedule"})
-    if (const Value* text = load.find(key); text != nullptr && text->kind() == Value::Kind::text)
-      add_words(text->text(), loads, found);
-  return found;
 }
 
 std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Checker& checker) {

@@ -22,8 +22,13 @@ struct PendingLoad {
   std::shared_ptr<const Load> load;
 };
 
-/// Names of loads of the scene that a checked load names under `of`, `to` or in its formula.
-std::set<std::string> needed_loads(const Value& load, const std::set<std::string>& loads);
+/// Names of loads of the scene that a checked load names under `of`, `to` or in its formula. A signal that is the
+/// column of a hinge is none of a load. \param model with all hinges; null where the tree has faults
+std::set<std::string> needed_loads(const Value& load, const std::set<std::string>& loads, const Model* model);
+
+/// Reports signals that loads measure by a name that a hinge and a load have both. \param loads of the scene, as
+/// checked \param model with all loads that can be bound
+void refuse_names_of_two(const Value& loads, const Model& model, const Checker& checker);
 
 /// In an order in which every load stands behind those that it needs. Loads that go round in a circle are reported and
 /// left out, and so are those that need a load which is not among them.

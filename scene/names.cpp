@@ -122,7 +122,14 @@ bool mentions(const Value& value, const std::set<std::string>& names) {
     for (auto at = text.begin(); at != text.end();) {
       at = std::find_if(at, text.end(), in_name);
       const auto end = std::find_if_not(at, text.end(), in_name);
-      if (names.contains(std::string(at, end))) return true;
+      std::string word(at, end);
+      if (names.contains(word)) return true;
+      // In a formula it may be a difference, and a sign may stand before it.
+      for (std::size_t dash = word.find('-'); dash != std::string::npos; dash = word.find('-')) {
+        if (names.contains(word.substr(0, dash))) return true;
+        word.erase(0, dash + 1);
+      }
+      if (names.contains(word)) return true;
       at = end;
     }
   }

@@ -82,6 +82,8 @@ class SceneBuilder {
     name_signals(document_, tree.model.get(), tree.names, checker_.registry());
     known(1, tree.names);
     add_loads(tree.model.get(), events);
+    if (const Value* loads = scene_.source.find("loads"); loads != nullptr && tree.model != nullptr)
+      refuse_names_of_two(*loads, *tree.model, checker_);
     name_loads(tree);
     add_motion_laws(tree.model.get());
     known(2, tree.names);
@@ -218,10 +220,11 @@ class SceneBuilder {
     std::set<std::string> names;
     if (const Value* given = document_.root.find("loads"))
       for (const auto& [name, load] : given->members()) names.insert(name);
-    add_parts<Load>("loads", grammar::load_members(), model != nullptr,
-                    [&](const std::string& name, const Value& value, std::shared_ptr<const Load> load) {
-                      loads.push_back({name, needed_loads(value, names), events.with_forms(name, std::move(load))});
-                    });
+    add_parts<Load>(
+        "loads", grammar::load_members(), model != nullptr,
+        [&](const std::string& name, const Value& value, std::shared_ptr<const Load> load) {
+          loads.push_back({name, needed_loads(value, names, model), events.with_forms(name, std::move(load))});
+        });
     // What a load needs that is reported, or what goes round in a circle with it, needs no report of its own.
     for (const PendingLoad& pending : loads) refused_.insert(pending.name);
     for (const PendingLoad& pending : in_order_of_need(std::move(loads), checker_)) {

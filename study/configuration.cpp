@@ -56,15 +56,15 @@ void require_no_switches(const std::string& file, const Model& model, const Load
                      node.name + "=null)");
 }
 
-/// The state with all loads begun. One with a delay that waits for its next sample takes it here: small motions are
-/// about loads that act, and the analyses hold time still, so that no sample would come.
+/// The state with all loads begun. One that waits for its next sample takes it here: small motions are about loads that
+/// act, and the analyses hold time still, so that no sample would come.
 State all_begun(const Model& model, const EquationsOfMotion& equations, State state) {
   state = begun(model, equations, std::move(state));
   Renewal renewal(model, equations);
   renewal.at(state);
   for (const LoadSlot& slot : sampled_slots(model)) {
     const auto* digital = dynamic_cast<const DigitalPart*>(model.loads()[slot.load].load->discrete());
-    if (digital != nullptr && digital->waits(std::span(state.y).subspan(slot.first, slot.count)))
+    if (digital != nullptr && digital->waits(model.loads()[slot.load].discrete(std::span<const double>(state.y))))
       renewal(state, slot, {});
   }
   return state;
@@ -139,8 +139,13 @@ bool Configuration::sampled() const { return !sampled_slots(prepared_.model()).e
 
 std::vector<LoadSlot> sampled_slots(const Model& model) {
   std::vector<LoadSlot> slots;
-  for (const LoadSlot& slot : model.layout().discrete_slots)
-    if (model.loads()[slot.load].load->discrete()->period() > 0) slots.push_back(slot);
+  for (LoadSlot slot : model.layout().discrete_slots) {
+    const DiscretePart* part = model.loads()[slot.load].load->discrete();
+    if (!(part->period() > 0)) continue;
+    const auto* digital = dynamic_cast<const DigitalPart*>(part);
+    const std::size_t told = digital == nullptr ? 0 : digital->told();
+    slots.push_back({slot.load, slot.first + told, slot.count - told});
+  }
   return slots;
 }
 
@@ -210,8 +215,12 @@ Holding read_holding(const Model& model, const std::vector<std::string>& lock, c
 namespace {
 
 /// Names of the loads that are at a limit at a state: what a controller does there does not depend on what it measures.
-std::vector<std::string> at_limits(const Configuration& c, const State& state) {
+std::vector<std::string> at_limits(const Configuration& c, State state) {
   const Model& model = c.prepared().model();
+  // Sampled ones tell of their last sample, and none has been taken there.
+  Renewal renewal(model, *c.prepared().equations);
+  renewal.at(state);
+  for (const LoadSlot& slot : sampled_slots(model)) renewal(state, slot, {});
   std::vector<std::string> names;
   for (std::size_t l = 0; l < model.loads().size(); ++l) {
     const std::shared_ptr<const BoundSensor> sensor = limit_sensor(model, l);

@@ -52,7 +52,7 @@ class Configuration {
   Held held_;
 };
 
-/// Where a state has what the sampled loads of a model hold.
+/// Where a state has what the sampled loads of a model hold, but for what outputs alone show of them.
 std::vector<LoadSlot> sampled_slots(const Model& model);
 /// Its names, as "control.held[0]".
 std::vector<std::string> sampled_names(const Model& model);

@@ -10,6 +10,7 @@
 #include "withy/core/analysis/coupled_modes.hpp"
 #include "withy/core/analysis/still_equations.hpp"
 #include "withy/study/bent.hpp"
+#include "withy/study/blade_tracker.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/sampled_loads.hpp"
 #include "withy/study/sampled_steady.hpp"
@@ -108,6 +109,7 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
   std::optional<Configuration> base, c, before;
   std::optional<State> last;
   BranchTracker tracker;
+  BladeTracker blades;
   const auto configured = [&](double value) {
     if (!base || varies) {
       SceneValues here = values;
@@ -140,6 +142,7 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
         at.jump = jump_between(*before, *last, *c, steady, [&] { return midway(sweep.values[k - 1], value); });
       last = steady;
     }
+    if (at.turn && at.turn->blades) blades.follow(value, *at.turn->blades);
     if (at.problem.empty()) {
       BranchedModes followed = tracker.follow(
           std::move(at.modes), at.masses,

@@ -36,9 +36,15 @@ BladeModes blades_of(const TurningForm& form, const Configuration& c, const std:
     try {
       const MultibladeForm seen =
           multiblade_form(form, c.held(), c.layout().speed_names, c.layout().continuous_names, group);
-      BladeModes found{seen.blades.names, {}, seen.A.change()};
-      for (const CharacteristicMode& mode : constant_modes(seen.A.mean(), seen.masses))
+      BladeModes found;
+      found.blades = seen.blades.names;
+      found.change = seen.A.change();
+      found.masses = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(seen.coordinates.size()));
+      found.masses.head(seen.masses.size()) = seen.masses.cwiseAbs();
+      for (const CharacteristicMode& mode : constant_modes(seen.A.mean(), seen.masses)) {
         found.modes.push_back(named(mode, pattern(seen, mode)));
+        found.shapes.push_back(mode.shape);
+      }
       return found;
     } catch (const std::domain_error& e) {
       why = e.what();

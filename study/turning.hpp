@@ -35,7 +35,11 @@ struct FloquetModes {
 struct BladeModes {
   std::vector<std::string> blades;  ///< in their order
   std::vector<NamedMode> modes;     ///< of the equations averaged over a turn
-  double change = 0;                ///< what the average leaves out: greatest change of an element, of the greatest
+  /// Of each mode: displacements in multi-blade coordinates, then states of loads; what dominates is 1.
+  std::vector<Eigen::VectorXcd> shapes;
+  Eigen::VectorXd masses;             ///< that weigh shapes; zero for the states of loads
+  std::vector<std::size_t> branches;  ///< along a sweep, of each mode; empty where nobody followed them
+  double change = 0;                  ///< what the average leaves out: greatest change of an element, of the greatest
 };
 
 struct TurningModes {

@@ -22,6 +22,10 @@ struct BranchedModes {
 /// apart.
 enum class Closeness { of_squares, of_eigenvalues };
 
+/// Of each row of costs the column that goes with it, each column once: the cheapest pairs first. None where all
+/// columns are taken, or those left cost more than `most`.
+std::vector<std::optional<std::size_t>> cheapest_pairs(const Eigen::MatrixXd& costs, double most);
+
 /// Follows modes through a sweep: the same branch keeps its number although others cross it.
 class BranchTracker {
  public:

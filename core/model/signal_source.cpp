@@ -49,6 +49,28 @@ std::optional<std::size_t> place_of(const std::string& name, const std::vector<C
   return {};
 }
 
+/// Nothing where no hinge has a column of this name.
+std::optional<SignalSource> of_hinge(const Model& model, const std::string& name) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    if (const auto i = place_of(name, coordinate_columns(model.hinges()[h])))
+      return SignalSource{Kind::position, slot.position + *i};
+    if (const auto i = place_of(name, rate_columns(model.hinges()[h])))
+      return SignalSource{Kind::rate, slot.speed + *i};
+  }
+  return {};
+}
+
+/// Nothing where no load gives a number of this name.
+std::optional<SignalSource> of_load(const Model& model, const std::string& name) {
+  for (std::size_t l = 0; l < model.loads().size(); ++l) {
+    const std::vector<std::string> given = names_of(model.loads()[l]);
+    const auto at = std::find(given.begin(), given.end(), name);
+    if (at != given.end()) return SignalSource{Kind::load, l, static_cast<std::size_t>(at - given.begin())};
+  }
+  return {};
+}
+
 }  // namespace
 
 UnknownSignal::UnknownSignal(std::string called, std::vector<std::string> there_are)
@@ -57,17 +79,8 @@ UnknownSignal::UnknownSignal(std::string called, std::vector<std::string> there_
       known(std::move(there_are)) {}
 
 SignalSource find_signal(const Model& model, const std::string& name) {
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const Slot& slot = model.layout().hinges[h];
-    if (const auto i = place_of(name, coordinate_columns(model.hinges()[h])))
-      return {Kind::position, slot.position + *i};
-    if (const auto i = place_of(name, rate_columns(model.hinges()[h]))) return {Kind::rate, slot.speed + *i};
-  }
-  for (std::size_t l = 0; l < model.loads().size(); ++l) {
-    const std::vector<std::string> given = names_of(model.loads()[l]);
-    const auto at = std::find(given.begin(), given.end(), name);
-    if (at != given.end()) return {Kind::load, l, static_cast<std::size_t>(at - given.begin())};
-  }
+  if (const auto source = of_hinge(model, name)) return *source;
+  if (const auto source = of_load(model, name)) return *source;
   std::size_t first = 0;
   for (const SensorNode& node : measured(model)) {
     if (node.sensor == nullptr) {
@@ -79,6 +92,10 @@ SignalSource find_signal(const Model& model, const std::string& name) {
     first += columns.size();
   }
   throw UnknownSignal(name, known(model));
+}
+
+bool is_of_hinge_and_load(const Model& model, const std::string& name) {
+  return of_hinge(model, name) && of_load(model, name);
 }
 
 }  // namespace withy

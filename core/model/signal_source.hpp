@@ -34,8 +34,11 @@ struct UnknownSignal : std::invalid_argument {
 };
 
 /// The source of a column of a hinge (`shoulder`, `shoulder.rate`), of what a load gives (`servo`, of several numbers
-/// `servo.0`) or of a number of an output (`imu.z`).
+/// `servo.0`) or of a number of an output (`imu.z`), in this order where several have the name.
 /// \throws UnknownSignal where there is no such number; the text has those that there are.
 SignalSource find_signal(const Model& model, const std::string& name);
+
+/// Whether a name is both that of a hinge's column, which find_signal takes, and that of what a load gives.
+bool is_of_hinge_and_load(const Model& model, const std::string& name);
 
 }  // namespace withy

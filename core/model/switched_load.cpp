@@ -92,6 +92,10 @@ class SwitchedDiscrete final : public DiscretePart, public SampledPart, public D
     const DigitalPart* part = digital_part(*forms_.front());
     return part != nullptr && part->draws();
   }
+  std::size_t told() const override {
+    const DigitalPart* part = digital_part(*forms_.front());
+    return part == nullptr ? 0 : part->told();
+  }
   void renew_measured(double t, const Crossing& crossing, std::span<const double> measured,
                       std::span<double> discrete) const noexcept override {
     const BoundLoad* load = acting(discrete);

@@ -116,7 +116,7 @@ void Renewal::operator()(State& state, const LoadSlot& slot, const Crossing& cro
   const auto of_slot = [&](const LoadSlot& other) { return other.load == slot.load; };
   const auto at = std::find_if(layout.discrete_slots.begin(), layout.discrete_slots.end(), of_slot);
   const Measured& measured = measured_[static_cast<std::size_t>(at - layout.discrete_slots.begin())];
-  const std::span<double> y(state.y), own = y.subspan(slot.first, slot.count);
+  const std::span<double> y(state.y), own = y.subspan(at->first, at->count);
   model_.loads()[slot.load].load->discrete()->renew(
       state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), crossing, own, scratch_);
   if (measured.part == nullptr) return;

@@ -27,7 +27,8 @@ class Renewal {
   /// Goes to an instant, before any load is renewed there. Where loads or motions jump at it, which their times may
   /// tell by rounding later, outputs are what they are from then on.
   void at(const State& before);
-  /// Renews the states of one load at the state's time: that of the last call of `at`.
+  /// Renews the states of one load at the state's time: that of the last call of `at`. \param slot of the load, or a
+  /// part of it
   void operator()(State& state, const LoadSlot& slot, const Crossing& crossing);
   /// Why a load whose law is not the engine's own has failed at this state, "load 'name': …"; empty: none has.
   [[nodiscard]] std::string failure(const State& state) const;

@@ -32,7 +32,7 @@ class Actuator final : public ControlBlock {
     if (is_limit(lag_.rate_limit)) all.push_back({"rate_margin", "command/s"});
     return all;
   }
-  void show(double /*t*/, std::span<const double> w, std::span<const double> z,
+  void tell(double /*t*/, std::span<const double> w, std::span<const double> z,
             std::span<double> values) const noexcept override {
     std::size_t next = 0;
     if (is_limit(lag_.limit)) values[next++] = lag_.limit - std::abs(w[0]);
@@ -85,7 +85,7 @@ class DcMotor final : public ControlBlock, public CourseOfTime {
     if (is_limit(motor_.limit)) all.push_back({"margin", "V"});
     return all;
   }
-  void show(double t, std::span<const double> w, std::span<const double> /*z*/,
+  void tell(double t, std::span<const double> w, std::span<const double> /*z*/,
             std::span<double> values) const noexcept override {
     const double voltage = asked(t, w);
     values[0] = std::clamp(voltage, -motor_.limit, motor_.limit);

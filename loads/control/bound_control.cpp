@@ -134,11 +134,6 @@ BoundControl::BoundControl(const Model& model, ControlEnds ends, std::shared_ptr
   for (std::size_t i = 0; i < states.size(); ++i) numbers_.push_back({states[i], unit(block_->unit_of_state(i))});
 }
 
-void BoundControl::show_states_alone() {
-  const auto first = numbers_.begin() + static_cast<std::ptrdiff_t>(outputs());
-  numbers_.erase(first, first + static_cast<std::ptrdiff_t>(block_->shown().size()));
-}
-
 void BoundControl::wrenches(double /*t*/, std::span<const FrameMotion> /*motions*/,
                             std::span<Wrench> wrenches) const noexcept {
   std::fill(wrenches.begin(), wrenches.end(), Wrench{});

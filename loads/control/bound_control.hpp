@@ -38,8 +38,6 @@ class BoundControl : public BoundLoad, public LoadOutput, public LoadNumbers, pu
   bool changes_gain() const override { return block_->changes_gain(); }
 
  protected:
-  /// Leaves away what the block shows of its inputs, which are not known at all times.
-  void show_states_alone();
   [[nodiscard]] const ControlEnds& ends() const { return ends_; }
   [[nodiscard]] const ControlBlock& block() const { return *block_; }
   [[nodiscard]] const std::shared_ptr<const ControlBlock>& shared_block() const { return block_; }

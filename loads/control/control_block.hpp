@@ -39,8 +39,12 @@ class ControlBlock {
   };
   /// What it tells beside commands and states.
   [[nodiscard]] virtual std::vector<Shown> shown() const { return {}; }
-  virtual void show(double /*t*/, std::span<const double> /*w*/, std::span<const double> /*z*/,
+  /// Sets one number for each of `shown`, of which `finish` makes what is shown. One that is sampled keeps them from
+  /// sample to sample among what it holds, which small motions are about: there they are smooth in w and z.
+  virtual void tell(double /*t*/, std::span<const double> /*w*/, std::span<const double> /*z*/,
                     std::span<double> /*values*/) const noexcept {}
+  /// Makes a margin of what is asked for, where `tell` sets that.
+  virtual void finish(std::span<double> /*values*/) const noexcept {}
   /// As those of Shown; of a command that acts nowhere.
   [[nodiscard]] virtual std::string unit_of_output() const { return "1"; }
   [[nodiscard]] virtual std::string unit_of_state(std::size_t /*state*/) const { return "1"; }

@@ -62,7 +62,9 @@ class ContinuousControl : public BoundControl, public ContinuousPart, public Cou
   void show(const LoadView& view, std::span<double> values) const noexcept override {
     const std::span<const double> w = measure(view);
     block().output(view.t, w, view.continuous, values.first(outputs()));
-    block().show(view.t, w, view.continuous, values.subspan(outputs()));
+    const std::span<double> told = values.subspan(outputs(), values.size() - outputs() - states_.size());
+    block().tell(view.t, w, view.continuous, told);
+    block().finish(told);
     std::copy(view.continuous.begin(), view.continuous.end(), values.end() - std::ssize(states_));
   }
   bool add_derivatives(const LoadView& view, ContinuousDerivatives& to) const override {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include "withy/loads/control/control_load.hpp"
@@ -102,17 +103,19 @@ class MovingAverage final : public ControlBlock {
 /// Multiples of a step within a range, as of a converter.
 class Quantizer final : public ControlBlock {
  public:
-  Quantizer(double step, double range) : step_(step), range_(range) {}
+  /// \param range infinite: none; else at least the step
+  Quantizer(double step, double range) : step_(step), most_(std::floor(range / step * (1 + 1e-12))) {}
   std::size_t inputs() const override { return 1; }
   std::string unit_of_output() const override { return "signal"; }
   void output(double /*t*/, std::span<const double> w, std::span<const double> /*z*/,
               std::span<double> v) const noexcept override {
-    v[0] = std::clamp(step_ * std::round(w[0] / step_), -range_, range_);
+    v[0] = step_ * std::clamp(std::round(w[0] / step_), -most_, most_);
   }
   bool gives_steps() const override { return true; }
 
  private:
-  double step_, range_;
+  double step_;
+  double most_;  ///< steps within the range; the quotient of the two is rounded
 };
 
 /// A signal with a normal number added at each sample, which depends on the seed and on the sample's number alone.
@@ -239,6 +242,10 @@ std::unique_ptr<Load> make_quantizer(const Value& p, const MakeContext& context)
   std::optional<ControlEnds> ends = read_signal_ends(p, context, 1);
   if (!digital(p, context, "a quantizer") || !ends) return nullptr;
   const double range = p.has("range") ? p.number_at("range") : std::numeric_limits<double>::infinity();
+  if (range < p.number_at("step")) {
+    context.diagnostics.error(p.at("range").place(), "is less than the 'step': it would never give but zero");
+    return nullptr;
+  }
   return make_control(std::move(*ends), std::make_shared<Quantizer>(p.number_at("step"), range));
 }
 
@@ -289,7 +296,7 @@ void enroll_filter(Enrollment& enrollment) {
       {number("window", "s", "a multiple of the sample").above(0)}, &make_moving_average);
   add("quantizer", "A signal in steps, as a converter gives it",
       {number("step", "1", "between two values, in the signal's unit").above(0),
-       number("range", "1", "greatest value, of either sign").above(0).optional()},
+       number("range", "1", "values end with the last step within it, of either sign").above(0).optional()},
       &make_quantizer);
   add("noise", "Normal noise, drawn anew at each sample: added to a signal, or alone",
       {number("deviation", "1", "standard deviation, in the signal's unit").least(0),

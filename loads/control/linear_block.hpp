@@ -36,7 +36,7 @@ class LinearBlock final : public ControlBlock, public CourseOfTime {
   std::vector<Shown> shown() const override {
     return reference_ ? std::vector<Shown>{{"error", "signal"}} : std::vector<Shown>{};
   }
-  void show(double t, std::span<const double> w, std::span<const double> /*z*/,
+  void tell(double t, std::span<const double> w, std::span<const double> /*z*/,
             std::span<double> values) const noexcept override {
     if (reference_) values[0] = input(t, w, 0);
   }

@@ -69,11 +69,14 @@ class Pid final : public ControlBlock, public CourseOfTime {
     if (limited()) all.push_back({"margin", "command"});
     return all;
   }
-  void show(double t, std::span<const double> w, std::span<const double> z,
+  void tell(double t, std::span<const double> w, std::span<const double> z,
             std::span<double> values) const noexcept override {
     const Demand a = demand(t, w, z);
     values[0] = a.error;
-    if (limited()) values[1] = k_.limit - std::abs(a.wanted);
+    if (limited()) values[1] = a.wanted;
+  }
+  void finish(std::span<double> values) const noexcept override {
+    if (limited()) values[1] = k_.limit - std::abs(values[1]);
   }
   std::string unit_of_state(std::size_t state) const override {
     return filters() && state == filter_place() ? "signal" : "command";

@@ -37,7 +37,7 @@ class ReactionWheel final : public ControlBlock {
     if (std::isfinite(drive_.speed_limit)) all.push_back({"speed_margin", "rad/s"});
     return all;
   }
-  void show(double /*t*/, std::span<const double> w, std::span<const double> z,
+  void tell(double /*t*/, std::span<const double> w, std::span<const double> z,
             std::span<double> values) const noexcept override {
     values[0] = motor(w, z);
     values[1] = friction(w[1]);

@@ -19,8 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_shares = 8;
 constexpr std::size_t least_branches = 10;
-/// Growth of this part of |λ| is that of rounding.
-constexpr double rounding = 1e-9;
 
 /// A shape in which equal numbers are equal kinetic energies.
 Eigen::VectorXcd weighted(const study::ModesAt& at, const Mode& mode) {
@@ -86,12 +84,13 @@ Json blades_json(const study::ModesOf& run, std::size_t count) {
         continue;
       }
       const study::NamedMode& m = *branch.at[k];
+      const bool swings = m.exponent.imag() > 0;
       values.push_back({{"value", run.points[k].value},
                         {"hertz", m.exponent.imag() / (2 * std::numbers::pi)},
-                        {"damping_ratio", -m.exponent.real() / std::abs(m.exponent)},
+                        {"damping_ratio", swings ? Json(-m.exponent.real() / std::abs(m.exponent)) : Json()},
                         {"growth", m.exponent.real()},
-                        {"unstable", m.exponent.real() > rounding * std::abs(m.exponent)},
-                        {"dominated_by", branch.name}});
+                        {"unstable", grows(*run.points[k].turn->blades, m)},
+                        {"dominated_by", m.dominated_by}});
     }
     branches.push_back({{"at", std::move(values)}});
   }

@@ -10,14 +10,18 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "withy/campaign/case_lanes.hpp"
+#include "withy/campaign/case_text.hpp"
 #include "withy/tests/campaign/plan_fixture.hpp"
 
 namespace withy::campaign {
 namespace {
 
 using test::PlanFolder;
+using test::plugins;
 
 /// Greatest distance of a sample from the uniform distribution (Kolmogorov and Smirnov).
 double distance_from_uniform(std::vector<double> sample) {
@@ -48,7 +52,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
 std::vector<double> column(const Plan& plan, std::size_t axis) {
   const Cases cases(plan);
   std::vector<double> all;
-  for (std::uint64_t i = 0; i < cases.size(); ++i) all.push_back(cases.values(i)[axis].number());
+  for (std::uint64_t i = 0; i < cases.size(); ++i) all.push_back(cases.values(i)[axis]->number());
   return all;
 }
 
@@ -149,13 +153,13 @@ cases: 2
   ASSERT_EQ(cases.size(), 12U) << "lists of one file go together";
   std::set<double> drawn;
   for (std::uint64_t i = 0; i < 12; ++i) {
-    const std::vector<Value> v = cases.values(i);
-    EXPECT_DOUBLE_EQ(v[0].number(), 1e-9 * (1 + static_cast<double>(i / 4)));
-    EXPECT_EQ(v[1].number(), i / 2 % 2 == 0 ? 1 : 2);
-    EXPECT_EQ(v[2].number(), i / 2 % 2 == 0 ? -9 : -8);
-    EXPECT_GT(v[3].number(), 0.01);
-    EXPECT_LT(v[3].number(), 0.02);
-    drawn.insert(v[3].number());
+    const CaseValues v = cases.values(i);
+    EXPECT_DOUBLE_EQ(v[0]->number(), 1e-9 * (1 + static_cast<double>(i / 4)));
+    EXPECT_EQ(v[1]->number(), i / 2 % 2 == 0 ? 1 : 2);
+    EXPECT_EQ(v[2]->number(), i / 2 % 2 == 0 ? -9 : -8);
+    EXPECT_GT(v[3]->number(), 0.01);
+    EXPECT_LT(v[3]->number(), 0.02);
+    drawn.insert(v[3]->number());
   }
   EXPECT_EQ(drawn.size(), 12U) << "drawn anew for each case";
 }
@@ -216,10 +220,10 @@ TEST(Cases, DesignsChangeOneValueAtATime) {
   const std::string vary =
       "vary: {bodies.rod.mass: {uniform: {from: 1, to: 2}}, gravity.1: {normal: {mean: -9, deviation: "
       "1}}, gravity.0: {uniform: {from: 0, to: 1}}}\n";
-  const auto changed = [](const std::vector<Value>& a, const std::vector<Value>& b) {
+  const auto changed = [](const CaseValues& a, const CaseValues& b) {
     std::set<std::size_t> axes;
     for (std::size_t i = 0; i < a.size(); ++i)
-      if (a[i].number() != b[i].number()) axes.insert(i);
+      if (a[i]->number() != b[i]->number()) axes.insert(i);
     return axes;
   };
   const Plan morris = folder.plan(vary + "design: {type: morris, levels: 6}\ncases: 50\n");
@@ -240,16 +244,16 @@ TEST(Cases, DesignsChangeOneValueAtATime) {
   for (std::uint64_t s = 0; s < 20; ++s)
     for (std::size_t a = 0; a < 3; ++a) {
       EXPECT_EQ(changed(samples.values(5 * s), samples.values(5 * s + a + 1)), std::set<std::size_t>{a});
-      EXPECT_EQ(samples.values(5 * s + a + 1)[a].number(), samples.values(5 * s + 4)[a].number());
+      EXPECT_EQ(samples.values(5 * s + a + 1)[a]->number(), samples.values(5 * s + 4)[a]->number());
     }
   const Plan alone = folder.plan(
       "vary: {bodies.rod.mass: {grid: [1, 2, 3]}, gravity.1: {normal: {mean: -9, deviation: 1}}}\n"
       "design: one-at-a-time\n");
   const Cases each(alone);
   ASSERT_EQ(each.size(), 6U);
-  EXPECT_EQ(each.values(0)[0].kind(), Value::Kind::null) << "the scene itself";
-  EXPECT_EQ(each.values(3)[0].number(), 3);
-  EXPECT_NEAR(each.values(5)[1].number(), -8, 1e-12) << "one deviation up";
+  EXPECT_FALSE(each.values(0)[0]) << "the scene itself";
+  EXPECT_EQ(each.values(3)[0]->number(), 3);
+  EXPECT_NEAR(each.values(5)[1]->number(), -8, 1e-12) << "one deviation up";
 }
 
 /// All of a value, with the places it stands at.
@@ -279,7 +283,7 @@ cases: 3
   const Cases cases(plan);
   std::vector<SceneValues> spare;
   for (std::uint64_t i = 0; i < 3; ++i) {
-    const std::vector<Value> values = cases.values(i);
+    const CaseValues values = cases.values(i);
     const std::string origin = fmt::format("case {}", i);
     ASSERT_TRUE(cases.spares(values));
     SceneValues scene = cases.scene(values, origin, spare);
@@ -293,6 +297,47 @@ cases: 3
     return Cases(other).spares(Cases(other).values(0));
   };
   EXPECT_FALSE(sparing("{integrator.name: {grid: [dopri5]}}")) << "which may bring other members";
+  EXPECT_FALSE(sparing("{limits.deflection: {grid: [null, 1]}}")) << "which takes a member away";
+}
+
+/// A pendulum of length l that starts at rest from 60 degrees, with a damper: without it, it has the energy it began
+/// with all along.
+Plan damped_plan(const PlanFolder& folder, const std::string& more) {
+  folder.write("damped.yaml", R"(format: withy/1
+gravity: [0, -9.81, 0]
+integrator: {name: rk4, step: 0.002}
+time: {end: 1, output: 0.05}
+bodies: {rod: {type: rigid, mass: 1.2, center_of_mass: [0, -0.5, 0], inertia: [0.2, 0.2, 0.1, 0, 0, 0]}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: rod}}
+loads: {drag: {type: hinge-spring, hinge: pivot, damping: 0.5}}
+initial: {hinges: {pivot: {position: ["60 deg"]}}}
+)");
+  folder.write("damped-plan.yaml",
+               "format: withy-sweep/1\nscene: damped.yaml\nkeep: {final: [kinetic_energy, pivot]}\n" + more);
+  return read_plan((folder / "damped-plan.yaml").string(), plugins());
+}
+
+/// What is set to nothing is not there, alone too: m g l (cos q − cos 60°) is the kinetic energy of a pendulum without
+/// a damper, and more than that of one with it.
+TEST(Cases, ANullLevelTakesAwayWhatTheSceneSays) {
+  const PlanFolder folder;
+  const std::string vary = "vary: {loads.drag: {grid: [null, {type: hinge-spring, hinge: pivot, damping: 0.5}]}}\n";
+  for (const std::string design : {"", "design: one-at-a-time\n"}) {
+    const Plan plan = damped_plan(folder, vary + design);
+    const Cases cases(plan);
+    const std::uint64_t bare = design.empty() ? 0 : 1;
+    const CaseResult without = run_case(plan, cases, bare, plugins(), {});
+    const CaseResult with = run_case(plan, cases, bare + 1, plugins(), {});
+    ASSERT_TRUE(without.completed() && with.completed()) << without.message << with.message;
+    const auto given = [](const CaseResult& r) { return 1.2 * 9.81 * 0.5 * (std::cos(r.numbers[1]) - 0.5); };
+    EXPECT_NEAR(without.numbers[0], given(without), 1e-8);
+    EXPECT_LT(with.numbers[0], given(with) - 0.1);
+    EXPECT_THAT(case_json(plan, without).at("command").get<std::string>(), testing::HasSubstr("loads.drag=null"));
+    EXPECT_TRUE(case_json(plan, without).at("values").at("loads.drag").is_null());
+  }
+  const Plan alone = damped_plan(folder, vary + "design: one-at-a-time\n");
+  EXPECT_FALSE(case_json(alone, run_case(alone, Cases(alone), 0, plugins(), {})).at("values").contains("loads.drag"))
+      << "the scene's own stays";
 }
 
 }  // namespace

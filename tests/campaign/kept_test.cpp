@@ -8,6 +8,7 @@
 
 #include "withy/campaign/case_lanes.hpp"
 #include "withy/campaign/case_text.hpp"
+#include "withy/campaign/histories_picture.hpp"
 #include "withy/campaign/sweep_page.hpp"
 #include "withy/tests/campaign/store_fixture.hpp"
 
@@ -169,9 +170,43 @@ keep: {history: {of: [pivot, pivot.rate], every: 0.25}}
   EXPECT_TRUE(run(folder, plan, "many", {1, 1, 1, {}}).whole());
   const Collected collected = collect(folder / "many");
   EXPECT_THAT(folder.read("many/histories.svg"), HasSubstr(": the first 12 of 62, histories.csv has all<"));
+  EXPECT_THAT(folder.read("many/histories.svg"), HasSubstr(">pivot[rad] at bodies.rod.mass = 1.03333<"));
   const auto page = sweep_page(folder / "many", collected);
   EXPECT_EQ(page.at("histories").size(), 60U);
   EXPECT_EQ(page.at("histories_in_all"), 62);
+}
+
+/// Of 600 × 2 cases the page shows 1000, as many of either level: every second in the order of the plan would be of
+/// one.
+TEST(Sweeps, ShowCasesOfEveryLevelWhereThePageHasNotAll) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(R"(vary:
+  bodies.rod.mass: {grid: {from: 1, to: 2, count: 600}}
+  gravity.1: {grid: [-9, -8]}
+keep: {final: [pivot]}
+)");
+  const Store store(folder / "store", plan, false);
+  const Cases cases(plan);
+  {
+    SegmentWriter writer(store.segment(1, 1, 0), plan.fingerprint);
+    for (std::uint64_t i = 0; i < cases.size(); ++i) writer.append({i, "completed", "", cases.values(i), {0.5}, 0});
+  }
+  const Collected collected = collect(store.path());
+  const auto page = sweep_page(store.path(), collected);
+  EXPECT_EQ(page.at("counted"), 1200);
+  const auto& rows = page.at("sample").at("rows");
+  ASSERT_EQ(rows.size(), 1000U);
+  const auto heavy =
+      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.at("values").at(1) == -9; });
+  EXPECT_NEAR(static_cast<double>(heavy), 500, 30);  // deviation of a sample without replacement: 6.5
+}
+
+/// Titles tell levels as people read them, and a map as JSON without the quotes of CSV.
+TEST(HistoriesPictures, TellWhatTheCasesOfAPointShare) {
+  const CaseValues values = {Value(0.17453292519943295), std::nullopt, Value(std::string(R"({"damping":1.0})")),
+                             Value()};
+  EXPECT_EQ(title_of_point({"a", "b", "loads.drag", "c"}, values),
+            R"(a = 0.174533, loads.drag = {"damping":1.0}, c = null)");
 }
 
 /// A name that stands for many columns, as that of a body for its modes, stands for those of the plan's scene in every

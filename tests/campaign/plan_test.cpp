@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "withy/campaign/cases.hpp"
 #include "withy/campaign/histories.hpp"
 #include "withy/campaign/kept.hpp"
@@ -166,13 +169,49 @@ TEST(Plans, DeriveValuesByFormulasOfWhatVariesAndOfTheScene) {
   const PlanFolder folder;
   const std::string vary = "vary: {bodies.rod.mass: {grid: [2, 4]}}\n";
   const Plan plan = folder.plan(vary + "derived: {gravity.0: \"sqrt(bodies.rod.mass) * gravity.1 / 2\"}\n");
-  EXPECT_EQ(Cases(plan).values(1)[1].number(), 2 * -9.81 / 2);
+  EXPECT_EQ(Cases(plan).values(1)[1]->number(), 2 * -9.81 / 2);
   EXPECT_THAT(folder.errors(vary + "derived: {gravity.0: \"2 *\"}\n"),
               HasSubstr("plan.yaml:5:22: /derived/gravity.0: "));
   EXPECT_THAT(folder.errors(vary + "derived: {gravity.0: \"2 * gravity.7\"}\n"),
               HasSubstr("\"gravity.7\" neither varies nor is a number of the scene"));
   EXPECT_THAT(folder.errors(vary + "derived: {bodies.rod.mas: \"2\"}\n"),
               HasSubstr("plan.yaml:5:27: /bodies/rod/mas: unknown key"));
+}
+
+/// In every case a formula sees the numbers of that case.
+TEST(Plans, DeriveValuesFromThoseDerivedBefore) {
+  const PlanFolder folder;
+  const std::string vary = "vary: {bodies.rod.mass: {grid: [2, 4]}}\n";
+  const Plan plan = folder.plan(vary + "derived: {gravity.0: 3 * bodies.rod.mass, gravity.2: gravity.0 + 1}\n");
+  for (const std::uint64_t i : {0U, 1U}) {
+    EXPECT_EQ(Cases(plan).values(i)[1]->number(), 6 + 6 * static_cast<double>(i));
+    EXPECT_EQ(Cases(plan).values(i)[2]->number(), 7 + 6 * static_cast<double>(i));
+  }
+  EXPECT_EQ(Cases(folder.plan(vary + "derived: {gravity.1: gravity.1 / bodies.rod.mass}\n")).values(0)[1]->number(),
+            -9.81 / 2)
+      << "its own path is the scene's number";
+  EXPECT_THAT(folder.errors(vary + "derived: {gravity.2: gravity.0 + 1, gravity.0: 3 * bodies.rod.mass}\n"),
+              HasSubstr("plan.yaml:5:22: /derived/gravity.2: \"gravity.0\" is derived behind it"));
+  EXPECT_THAT(folder.errors("vary: {gravity: {grid: [[0, -9, 0], [0, -8, 0]]}}\n"
+                            "derived: {bodies.rod.mass: -gravity.1}\n"),
+              HasSubstr("\"gravity.1\" is a part of \"gravity\""));
+}
+
+/// Two paths may lead into each other only where neither takes away what the other sets.
+TEST(Plans, RefuseWhatAnotherValueWouldReplace) {
+  const PlanFolder folder;
+  EXPECT_THAT(folder.errors("vary: {gravity.1: {grid: [-9, -8]}, gravity: {grid: [[0, -7, 0]]}}\n"),
+              HasSubstr("plan.yaml:4:37: /vary/gravity: takes the place of \"gravity.1\""));
+  EXPECT_THAT(folder.errors("vary: {gravity: {grid: [[0, -7, 0]]}, gravity.1: {grid: [-9, -8]}}\n"),
+              HasSubstr("/vary/gravity.1: takes the place of a part that values of \"gravity\" give"));
+  EXPECT_THAT(folder.errors("vary: {gravity: {grid: [[0, -7, 0]]}}\nderived: {gravity.1: \"-9\"}\n"),
+              HasSubstr("/derived/gravity.1: takes the place of a part that values of \"gravity\" give"));
+  EXPECT_THAT(folder.errors("vary: {integrator: {grid: [dopri5]}, integrator.name: {grid: [rk4]}}\n"),
+              HasSubstr("/vary/integrator.name: takes the place of a part"));
+  const std::string apart = "vary: {integrator: {grid: [dopri5, radau]}, integrator.rtol: {grid: [1.0e-4, 1.0e-6]}}\n";
+  EXPECT_EQ(Cases(folder.plan(apart)).size(), 4U) << "no integrator says a tolerance";
+  const std::string alone = "vary: {gravity.1: {grid: [-9]}, gravity: {grid: [[0, -7, 0]]}}\ndesign: one-at-a-time\n";
+  EXPECT_EQ(Cases(folder.plan(alone)).size(), 3U) << "no case has both";
 }
 
 TEST(Plans, FingerprintsTellApartWhatChangesResultsAndNothingElse) {
@@ -187,6 +226,28 @@ TEST(Plans, FingerprintsTellApartWhatChangesResultsAndNothingElse) {
   const std::string before = of(list);
   folder.write("mass.csv", "mass\n1\n3\n");
   EXPECT_NE(before, of(list));
+}
+
+/// Whatever row of a list names it, alone or with others of its row.
+TEST(Plans, FingerprintsKnowTheFilesThatListsName) {
+  const PlanFolder folder;
+  folder.write("boom.yaml", R"(format: withy/1
+time: {end: 1}
+bodies: {boom: {type: modal, file: a.SID_FEM, damping_ratio: 0.005}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: boom}}
+)");
+  folder.write("files.csv", "bodies.boom.file,gravity.1\na.SID_FEM,-1\na.SID_FEM,-2\nb.SID_FEM,-3\n");
+  folder.write("files.yaml",
+               "format: withy-sweep/1\nscene: boom.yaml\nvary: {bodies.boom.file: {list: files.csv}, "
+               "gravity.1: {list: files.csv}}\n");
+  const auto fingerprint = [&] { return read_plan((folder / "files.yaml").string(), test::plugins()).fingerprint; };
+  std::ifstream file(WITHY_SOURCES "/scenes/cantilever.SID_FEM", std::ios::binary);
+  const std::string cantilever{std::istreambuf_iterator<char>(file), {}};
+  for (const char* name : {"a.SID_FEM", "b.SID_FEM"}) folder.write(name, cantilever);
+  const std::string before = fingerprint();
+  EXPECT_EQ(fingerprint(), before);
+  folder.write("b.SID_FEM", cantilever + "\n");
+  EXPECT_NE(fingerprint(), before);
 }
 
 }  // namespace

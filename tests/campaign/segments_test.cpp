@@ -33,6 +33,16 @@ TEST(Segments, KeepEveryStatusThatARunCanHave) {
   }
 }
 
+TEST(Segments, TellWhatIsTakenAwayFromWhatStays) {
+  const CaseResult r = *decode(encode(made(1)));
+  ASSERT_EQ(r.values.size(), 4U);
+  EXPECT_EQ(r.values[0]->number(), 0.1);
+  EXPECT_EQ(r.values[1]->text(), "quadratic");
+  ASSERT_TRUE(r.values[2]);
+  EXPECT_EQ(r.values[2]->kind(), Value::Kind::null);
+  EXPECT_FALSE(r.values[3]);
+}
+
 TEST(Segments, AnyDamageCostsTheRecordsItTouchesAndNoOther) {
   const PlanFolder folder;
   const std::filesystem::path path = folder / "a.segment";

@@ -16,7 +16,7 @@ inline CaseResult made(std::uint64_t index) {
   r.index = index;
   r.status = index % 5 == 0 ? "diverged" : "completed";
   r.message = index % 5 == 0 ? std::string("its \"tip\",\nfar") : "";
-  r.values = {Value(0.1 * static_cast<double>(index)), Value(std::string("quadratic")), Value()};
+  r.values = {Value(0.1 * static_cast<double>(index)), Value(std::string("quadratic")), Value(), std::nullopt};
   r.numbers = {1.0 / (1.0 + static_cast<double>(index)), -0.0};
   r.seconds = 0.5;
   return r;

@@ -100,6 +100,18 @@ TEST(Sweeps, CollectingClearsAwayWhatKilledProcessesHaveLeftOfATable) {
   for (const std::string& kept : {alive, elsewhere}) EXPECT_TRUE(std::filesystem::exists(folder / kept)) << kept;
 }
 
+/// File, title and folders of plugins are no part of the fingerprint: tables and pages name those of the last command.
+TEST(Sweeps, AStoreNamesThePlanAsItIsCalledToday) {
+  const PlanFolder folder;
+  run(folder, folder.plan(std::string("name: first\n") + twelve), "store", {1, 1, 1, {}});
+  Plan moved = folder.plan(std::string("name: second\n") + twelve);
+  moved.file = "moved.yaml";
+  EXPECT_EQ(run(folder, moved, "store", {1, 1, 1, {}}).ran, 0U);
+  const StoreDescription about = read_description(folder / "store");
+  EXPECT_EQ(about.name, "second");
+  EXPECT_EQ(case_command(about), "withy sweep case moved.yaml");
+}
+
 TEST(Sweeps, AStoreOfAnotherPlanIsNotMixedWith) {
   const PlanFolder folder;
   const Plan plan = folder.plan(twelve);

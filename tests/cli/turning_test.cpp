@@ -111,7 +111,7 @@ TEST(Turning, ASweepOfARotorsRateFromRestLeavesWhatTheTowerSees) {
     std::vector<std::string> cells;
     std::stringstream row(line);
     for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-    if (cells.size() == 8 && cells[1] == "12") seen[cells[2]] = std::stod(cells[4]);
+    if (cells.size() == 9 && cells[1] == "12") seen[cells[2]] = std::stod(cells[4]);
   }
   ASSERT_EQ(seen.size(), at.size());
   for (std::size_t i = 0; i < at.size(); ++i)

@@ -167,6 +167,62 @@ TEST(Urdf, WhatItCannotSayIsSaidWithTheName) {
   EXPECT_NO_THROW(written("{type: revolute, axis: [1, 0, 0], parent: world, child: b}"));
 }
 
+Urdf urdf_of(const std::string& scene) {
+  return write_urdf(host::Scene::parse(plugins(), scene).prepare()->model(), "r");
+}
+
+/// Three rods in a row, closed by a constraint, with events and a hinge that is locked at first: loops and events are
+/// no loads, and each is named.
+TEST(Urdf, LoopsAndEventsThatAreLeftOutAreNamed) {
+  const auto remarks = [](const std::string& more) {
+    return urdf_of(R"(format: withy/1
+bodies:
+  a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {end: {position: [1, 0, 0]}}}
+  b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {end: {position: [1, 0, 0]}}}
+hinges:
+  first: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
+  second: {type: revolute, axis: [0, 0, 1], parent: a.end, child: b}
+)" + more)
+        .remarks;
+  };
+  EXPECT_THAT(remarks("constraints: {loop: {type: hinge, hinge: spherical, a: b.end, b: world, offset: {position: "
+                      "[0, 0, 0]}}}\ninitial: {hinges: {second: {position: [180 deg]}}}\n"),
+              testing::ElementsAre("constraint 'loop' is left out, and its loop is open: URDF has trees alone"));
+  EXPECT_THAT(remarks("loads: {drag: {type: hinge-spring, hinge: first, damping: 1}}\n"
+                      "events: {go: {at: 1, do: {unlock: second}}}\ninitial: {locked: [second]}\n"),
+              testing::ElementsAre("1 of the scene's loads left out", "event 'go' is left out: URDF has none",
+                                   "hinge 'second' is held at first; its joint is free to move"));
+}
+
+/// A weld that an event lets go of is free in the model, and held.
+TEST(Urdf, AWeldThatAnEventLetsGoOfIsFixed) {
+  const Urdf urdf = urdf_of(R"(format: withy/1
+bodies: {lid: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {clasp: {type: weld, parent: world, child: lid}}
+events: {open: {at: 1, do: {release: lid}}}
+)");
+  EXPECT_THAT(urdf.text, testing::HasSubstr("<joint name=\"clasp\" type=\"fixed\">"));
+  EXPECT_THAT(urdf.remarks, testing::ElementsAre("event 'open' is left out: URDF has none"));
+}
+
+/// The link and the joints that a cylindrical hinge becomes have names of their own, whatever the scene's are.
+TEST(Urdf, NamesOfTheTwoJointsOfAHingeAreTheirOwn) {
+  const Urdf urdf = urdf_of(R"(format: withy/1
+bodies:
+  a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  sleeve_between: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  sleeve: {type: cylindrical, axis: [0, 0, 1], parent: world, child: a}
+  sleeve_0: {type: revolute, axis: [0, 1, 0], parent: a, child: sleeve_between}
+  sleeve_1: {type: revolute, axis: [0, 1, 0], parent: sleeve_between, child: b}
+)");
+  const Scratch file(".urdf", urdf.text);
+  const auto prepared = scene_of({file.file(), {}, false, 0, 0}).prepare();
+  EXPECT_EQ(prepared->model().bodies().size(), 4U);
+  EXPECT_EQ(prepared->equations->layout().speeds, 4U);
+}
+
 /// The end of a robot of two links, on a joint of this type.
 std::string two_links(const std::string& root, const std::string& root_mass, const std::string& type,
                       const std::string& rest = "") {

@@ -310,5 +310,38 @@ TEST(Control, LinearFormSeesMeasuredAccelerations) {
   EXPECT_LT((form.B - Eigen::Vector3d(0, 1 / m_felt, 1 / m_felt)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+/// A joint's controller may have the joint's name where nothing asks which of the two is meant: it measures the joint
+/// itself, and no load measures itself.
+TEST(Control, NamesOfAHingeAndALoadAreToldApartOrRefused) {
+  const auto end = [](const std::string& name) {
+    LoadedScene s(test::turntable + "initial: {hinges: {axle: {position: [0.5]}}}\nloads:\n  " + name +
+                  ": {type: expression, hinge: axle, value: -4 * axle - 0.8 * axle.rate}\n");
+    return s.position(s.run().back(), "axle");
+  };
+  EXPECT_EQ(end("axle"), end("servo"));
+  const auto problem = [](const std::string& drive) {
+    return test::problem_of(test::turntable + "loads:\n  drive: {type: " + drive +
+                            "}\n  axle: {type: pid, hinge: axle, to: nothing, proportional: 4}\n");
+  };
+  EXPECT_EQ(problem("expression, hinge: axle, value: -axle.rate"), "");
+  for (const char* drive : {"actuator, of: axle, hinge: axle, frequency: 100", "expression, hinge: axle, value: 2-axle",
+                            "pid, hinge: axle, proportional: [[0, 1], [1, 2]], schedule: axle"})
+    EXPECT_THAT(problem(drive), testing::HasSubstr("'axle' is a hinge and a load")) << drive;
+  EXPECT_EQ(
+      test::problem_of(test::turntable + "loads:\n  drive: {type: actuator, of: axle, hinge: axle, frequency: 100}\n  "
+                                         "axle: {type: hinge-spring, hinge: axle, stiffness: 4}\n"),
+      "")
+      << "a spring gives no number that could be measured";
+}
+
+/// A sign before a name, or a difference, is no part of it.
+TEST(Control, FormulasFindLoadsFurtherDownWhateverStandsBeforeTheirNames) {
+  for (const char* formula : {"-servo", "axle-servo", "2*(-servo)"})
+    EXPECT_EQ(test::problem_of(test::turntable + "loads:\n  copy: {type: expression, to: nothing, value: " + formula +
+                               "}\n  servo: {type: pid, hinge: axle, proportional: 3}\n"),
+              "")
+        << formula;
+}
+
 }  // namespace
 }  // namespace withy

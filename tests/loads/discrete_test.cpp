@@ -110,8 +110,8 @@ TEST(SampledController, conforms_to_the_suite) {
       *s.scene.model);
 }
 
-// Off and on again between two of its samples, of which it met none while it was off: it begins anew all the same, its
-// integral at zero, and takes a sample there.
+// Off and on again between two of its samples, of which it met none while it was off: it begins anew all the same, at
+// the next, its integral at zero, and holds nothing until then.
 TEST(SampledController, begins_anew_when_it_was_off_for_less_than_a_sample) {
   const double J = 0.2, period = 0.02, off = 0.513, on = 0.516;
   test::LoadedScene s(turntable + R"(loads:
@@ -138,7 +138,7 @@ events:
   for (const State& state : s.run()) {
     for (; next * period <= state.time; ++next) {
       if (!is_off && next * period > off) move(off), tau = 0, is_off = true;
-      if (!is_on && next * period > on) move(on), integral = 0, sample(), is_on = true;
+      if (!is_on && next * period > on) move(on), integral = 0, is_on = true;
       move(next * period);
       sample();
     }
@@ -147,6 +147,28 @@ events:
     EXPECT_NEAR(s.position(state, "axle"), x + h * v + h * h / (2 * J) * tau, 1e-10) << state.time;
   }
   EXPECT_TRUE(is_on);
+}
+
+// At rest until its first sample, whether that is where the run begins or comes a part of a period later: what it moves
+// and what it asks for are then the same.
+TEST(SampledController, that_begins_between_two_samples_waits_for_the_next) {
+  for (const std::string load :
+       {"{type: pd-controller, law: constant, sample: 0.1, hinges: {axle: {to: 0.5, stiffness: 5, damping: 0.4}}}",
+        "{type: computed-torque, law: constant, sample: 0.1, bandwidth: 2, damping_ratio: 1, hinges: {axle: {to: "
+        "0.5}}}",
+        "{type: pid, hinge: axle, proportional: 4, integral: 8, derivative: 1, filter: 0.05, reference: 0.5, sample: "
+        "0.1}",
+        "{type: transfer-function, hinge: axle, reference: 0.5, numerator: [4, 8], denominator: [0.5, 1], sample: "
+        "0.1}"}) {
+    const auto moved = [&](const std::string& start) {
+      test::LoadedScene s(turntable + "loads: {servo: " + load + "}\ninitial: {time: " + start + "}\n",
+                          {"time={end: 1.15, output: 5}"});
+      return s.position(s.run().back(), "axle");
+    };
+    const double there = moved("0.1");
+    EXPECT_GT(std::abs(there), 0.01) << load;
+    for (const char* start : {"0.01", "0.09", "0.0999999999999"}) EXPECT_NEAR(moved(start), there, 1e-9) << load;
+  }
 }
 
 // Pulses of a constant effort between the zeros of s = x: all arcs are parabolas. From x = 0.5 at rest, −τ until

@@ -57,8 +57,12 @@ TEST(Tracking, ErrorsAreThoseOfTheTrajectory) {
     EXPECT_EQ(all[1], "servo.command.two[N m]");
     EXPECT_EQ(all[2], "servo.error.one[rad]");
     EXPECT_EQ(all[3], "servo.error.two[rad]");
+    const bool sampled = load.find("sample") != std::string::npos;
     for (std::size_t k = 0; k < s.times.size(); ++k) {
-      ASSERT_NEAR(s["servo.error.one"][k], r(s.times[k]) - s["seen.position"][k], 1e-12) << load << s.times[k];
+      // By the clock it is that of the last sample: a row shows what was held until its own, but for the first and
+      // last.
+      const std::size_t of = sampled && k > 0 && k + 1 < s.times.size() ? k - 1 : k;
+      ASSERT_NEAR(s["servo.error.one"][k], r(s.times[of]) - s["seen.position"][of], 1e-12) << load << s.times[k];
       ASSERT_NEAR(s["servo.command.two"][k], s["effort"][k], 1e-12 * (1 + std::abs(s["effort"][k]))) << load;
     }
   }
@@ -125,6 +129,50 @@ events: {full: {limit: servo, direction: up}}
   s.run();
   ASSERT_EQ(s.summary.events.size(), 1U);
   EXPECT_NEAR(std::remainder(s.summary.events[0].time, 0.1), 0, 1e-12);
+}
+
+/// A swing of 1 Hz is at zero at each sample, where nothing is asked for: what it would ask for between them, up to
+/// twice the limit, it never does.
+TEST(Limits, OfSampledControllersAreNotReachedBetweenSamples) {
+  for (const std::string servo :
+       {"pid, hinge: axle, proportional: 1, limit: 0.5, sample: 1",
+        "pid, of: seen.position, hinge: axle, proportional: 1, limit: 0.5, sample: 1, delay: 1",
+        "pd-controller, law: constant, sample: 1, hinges: {axle: {stiffness: 1, damping: 0, limit: 0.5}}"}) {
+    Shown s(test::turntable + R"(initial: {hinges: {axle: {rate: [6.283185307179586]}}}
+outputs: {seen: {type: hinge, hinge: axle}, c: {type: control, of: servo}}
+loads:
+  spring: {type: hinge-spring, hinge: axle, stiffness: 7.895683520871486}
+  servo: {type: )" +
+                servo + "}\nevents: {full: {limit: servo, direction: up}, free: {limit: servo, direction: down}}\n",
+            {"time={end: 4.5, output: 0.05}"});
+    EXPECT_TRUE(s.scene.summary.events.empty()) << servo;
+    for (std::size_t k = 0; k < s.times.size(); ++k) {
+      ASSERT_NEAR(s["c.error"][k], 0, 1e-6) << servo << ", " << s.times[k];
+      ASSERT_NEAR(s["c.margin"][k], 0.5, 1e-6) << servo << ", " << s.times[k];
+    }
+  }
+}
+
+/// 2 kg are pushed by 3 N from 0.15 s on, which the accelerometer shows, and the controller learns at its next sample.
+TEST(Limits, OfSampledControllersOfAccelerationsAreReachedAtTheirSamples) {
+  Shown s(R"(format: withy/1
+time: {end: 0.35, output: 0.1}
+bodies: {cart: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}
+outputs: {imu: {type: accelerometer, of: cart}, c: {type: control, of: servo}}
+loads:
+  push: {type: hinge-effort, hinge: slide, law: steps, table: [[0, 0], [0.15, 3]]}
+  servo: {type: pid, of: imu.x, to: nothing, proportional: 4, limit: 5, sample: 0.1}
+events: {full: {limit: servo, direction: up}}
+)");
+  ASSERT_EQ(s.scene.summary.events.size(), 1U);
+  EXPECT_NEAR(s.scene.summary.events[0].time, 0.2, 1e-12);
+  for (std::size_t k = 0; k < s.times.size(); ++k) {
+    const double felt = s.times[k] < 0.25 ? 0 : 1.5;  // the row at a sample shows what was held until then
+    EXPECT_NEAR(s["c.error"][k], -felt, 1e-12) << s.times[k];
+    EXPECT_NEAR(s["c.margin"][k], 5 - 4 * felt, 1e-12) << s.times[k];
+    EXPECT_NEAR(s["c.command"][k], -std::min(4 * felt, 5.0), 1e-12) << s.times[k];
+  }
 }
 
 TEST(Delay, OfAContinuousSignalIsPadesToItsOrder) {

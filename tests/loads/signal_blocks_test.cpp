@@ -77,6 +77,26 @@ loads:
   }
 }
 
+/// A converter's numbers are multiples of its step, up to the last within the range; 0.6/0.2 is rounded below 3.
+TEST(Digital, AQuantizerEndsWithTheLastStepWithinItsRange) {
+  const auto last = [](const std::string& step, const std::string& range) {
+    const Shown s(test::turntable +
+                      "outputs: {q: {type: control, of: q, show: command}}\nloads:\n  line: {type: "
+                      "expression, value: 3 * t - 3, to: nothing}\n  q: {type: quantizer, of: line, step: " +
+                      step + ", range: " + range + ", sample: 0.02}\n",
+                  {"time.output=0.02", "time.end=1.99"});
+    const std::vector<double> q = s["q.command"];
+    EXPECT_EQ(q.front(), -q.back());
+    return q.back();
+  };
+  EXPECT_DOUBLE_EQ(last("0.25", "0.6"), 0.5);
+  EXPECT_DOUBLE_EQ(last("0.2", "0.6"), 0.6);
+  EXPECT_DOUBLE_EQ(last("0.25", "1"), 1);
+  EXPECT_THAT(
+      test::problem_of(test::turntable + "loads: {q: {type: quantizer, of: axle, step: 1, range: 0.5, sample: 0.1}}\n"),
+      testing::AllOf(HasSubstr("/loads/q/range"), HasSubstr("is less than the 'step'")));
+}
+
 TEST(Digital, NoiseIsNormalAndDependsOnSeedAndSampleAlone) {
   const std::string text = test::turntable + R"(outputs: {n: {type: control, of: noise, show: command}}
 loads: {noise: {type: noise, deviation: 0.3, seed: 11, sample: 0.001}}
@@ -114,6 +134,40 @@ loads:
     ASSERT_NEAR(s["area.command"][k], area, 1e-8);
     ASSERT_NEAR(s["mean.command"][k], area / t, 1e-8);
     ASSERT_NEAR(s["rms.command"][k], std::sqrt(square / t), 1e-8);
+  }
+}
+
+/// Of a constant 2 from the first sample on, wherever between two of them it begins: no part of a period counts as a
+/// whole one.
+TEST(OverTime, ThatBeginsBetweenTwoSamplesBeginsAtTheNext) {
+  const std::string text = test::turntable + R"(outputs:
+  area: {type: control, of: area, show: command}
+  mean: {type: control, of: mean, show: command}
+  rms: {type: control, of: rms, show: command}
+loads:
+  area: {type: over-time, of: axle, what: integral, sample: 0.1}
+  mean: {type: over-time, of: axle, what: mean, sample: 0.1}
+  rms: {type: over-time, of: axle, what: rms, sample: 0.1}
+)";
+  const std::string rest = "hinges: {axle: {position: [2]}}";
+  for (const std::vector<std::string>& begins :
+       {std::vector<std::string>{"initial={" + rest + ", time: 0.29}"},
+        {"initial={" + rest + ", time: 0.29999999999999}"},
+        {"initial={" + rest + ", time: 0.3}"},
+        {"initial={" + rest + R"(, settings: {area: "off", mean: "off", rms: "off"}})",
+         "events={on: {at: 0.29, do: {switch_on: [area, mean, rms]}}}"}}) {
+    std::vector<std::string> all = begins;
+    all.emplace_back("time={end: 1.05, output: 0.05}");
+    const Shown s(text, all);
+    for (std::size_t k = 0; k < s.times.size(); ++k) {
+      const double t = s.times[k];
+      if (t < 0.32) continue;
+      ASSERT_NEAR(s["mean.command"][k], 2, 1e-12) << begins.front() << ", " << t;
+      ASSERT_NEAR(s["rms.command"][k], 2, 1e-12) << begins.front() << ", " << t;
+      // A row at a sample shows what was held until then.
+      const double sampled = std::ceil(t / 0.1 - 1e-6) - 1;
+      ASSERT_NEAR(s["area.command"][k], 2 * 0.1 * (sampled - 3), 1e-12) << begins.front() << ", " << t;
+    }
   }
 }
 
@@ -159,6 +213,7 @@ loads:
   servo: {type: pid, hinge: axle, proportional: 5, integral: 4, derivative: 1, filter: 0.05, reference: 0.5}
   digital: {type: pid, of: axle, to: nothing, proportional: 2, integral: 1, reference: 0.2, sample: 0.01}
 )");
+  const std::size_t rows = s.times.size();
   std::vector<std::string> names;
   for (const Column& c : s.columns) names.push_back(c.name + "[" + c.unit + "]");
   EXPECT_THAT(names, testing::ElementsAre("c.command[N m]", "c.error[rad]", "c.integral[N m]", "c.filter[rad]",
@@ -167,7 +222,9 @@ loads:
   for (std::size_t k = 0; k < s.times.size(); ++k) {
     const double e = 0.5 - s["axle_seen.position"][k];
     ASSERT_DOUBLE_EQ(s["c.error"][k], e);
-    ASSERT_DOUBLE_EQ(s["d.error"][k], 0.2 - s["axle_seen.position"][k]);
+    // Of the last sample: a row shows what was held until its own, but for the first and the last.
+    const std::size_t sampled = k > 0 && k + 1 < rows ? k - 1 : k;
+    ASSERT_NEAR(s["d.error"][k], 0.2 - s["axle_seen.position"][sampled], 1e-12);
     ASSERT_NEAR(s["c.command"][k], 5 * e + s["c.integral"][k] + (e - s["c.filter"][k]) / 0.05, 1e-9);
     ASSERT_NEAR(s["c.command"][k], 0.2 * s["axle_seen.acceleration"][k], 1e-9);
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/model/columns.hpp"
 #include "withy/study/configuration.hpp"
 #include "withy/tests/study/plugins.hpp"
 

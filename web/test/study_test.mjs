@@ -5,7 +5,7 @@ import { execSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { scale_of } from '../src/studies/figure.js';
-import { name_within } from '../src/studies/sweep.js';
+import { name_within, names_beside } from '../src/studies/sweep.js';
 import { in_browser, opened, says, text } from './browser.mjs';
 import { check_words } from './landmarks.mjs';
 
@@ -30,6 +30,20 @@ function check_names() {
   const cut = name_within('initial.hinges.the_slider_of_the_arm.position.0', ' = -0.3654', 42);
   assert.equal(cut, '…he_slider_of_the_arm.position.0 = -0.3654');
   assert.equal(cut.length, 42);
+}
+
+// Wherever three lines stand, their names are all there in their order, in the frame, and none runs into another.
+function check_names_of_lines() {
+  const names = ['5 %', 'median', '95 %'], at = [80, 81, 100, 130, 200, 300, 380, 399, 400];
+  for (const a of at) for (const b of at.filter(x => x >= a)) for (const c of at.filter(x => x >= b)) {
+    const placed = names_beside([a, b, c].map((x, i) => ({ x, name: names[i] })), 80, 400);
+    assert.equal(placed.map(p => p.name).join(', '), '5 %, median, 95 %');
+    placed.forEach((p, i) => {
+      assert.ok(p.from >= 80 && p.to <= 400, `${[a, b, c]}: ${p.name} leaves the frame`);
+      assert.ok(i === 0 || p.from >= placed[i - 1].to, `${[a, b, c]}: ${p.name} runs into the one before`);
+    });
+  }
+  assert.equal(names_beside([100, 200, 300].map((x, i) => ({ x, name: names[i] })), 80, 400).length, 3);
 }
 
 // Each model is a mark where its numbers say; a click tells all of it, with the command that runs it.
@@ -100,11 +114,27 @@ async function check_modes(browser, folder, run, troubles) {
   await page.click('#theme');
   await shot(page, 'modes-dark');
   await page.close();
+  await check_lines_of_the_rate(browser, folder, run, troubles);
   run('modes', join(scenes, 'two-link-slew.yaml'), '--lock', 'shoulder,elbow', '--out', join(folder, 'locked'));
   const single = await opened(browser, join(folder, 'locked/report.html'), 'theme=light', troubles);
   assert.ok(await single.locator('table.rows tbody tr').count() >= 2);
   await shot(single, 'modes-single');
   await single.close();
+}
+
+// Lines of the rate are inside the frame for rates of either sign, whichever way they are swept: from zero to both sides.
+async function check_lines_of_the_rate(browser, folder, run, troubles) {
+  for (const [rates, sides] of [['-60 rpm:60 rpm:5', 2], ['60 rpm:0 rpm:5', 1], ['-60 rpm:0 rpm:5', 1], ['30 rpm:60 rpm:5', 1]]) {
+    const out = join(folder, `rates${rates.replaceAll(/[ :]/g, '_')}`);
+    run('modes', join(scenes, 'rotating-blade.yaml'), '--sweep', `spin.axle=${rates}`, '--out', out);
+    const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+    const frame = await page.locator('#campbell rect.frame').evaluate(e => e.getBBox());
+    const lines = await page.locator('#campbell path.harmonic').evaluateAll(all => all.map(e => { const b = e.getBBox(); return [b.x, b.y, b.x + b.width, b.y + b.height]; }));
+    assert.equal(lines.length, 4 * sides, rates);
+    for (const [left, top, right, foot] of lines)
+      assert.ok(left > frame.x - 0.1 && right < frame.x + frame.width + 0.1 && top > frame.y - 0.1 && foot < frame.y + frame.height + 0.1, rates);
+    await page.close();
+  }
 }
 
 // The locus of a loop has a mark for each eigenvalue of its branches, and branches that end leave gaps.
@@ -155,7 +185,7 @@ async function check_blades(browser, folder, run, troubles) {
   const marks = () => page.locator('#campbell .mark').count();
   assert.equal(await marks(), blades.branches.flatMap(b => b.at).filter(Boolean).length);
   assert.match(await text(page, '#campbell'), /1 per turn[^]*3 per turn[^]*6 per turn/);
-  assert.match(await text(page, '#mode'), /forward|backward|collective/);
+  assert.match(await text(page, '#campbell'), /forward|backward|collective/);
   assert.doesNotMatch(await text(page, '.answer'), /one frozen angle/);
   await shot(page, 'blades-light');
   await page.selectOption('select[aria-label="Seen from"]', 'the blades, at one angle');
@@ -311,6 +341,7 @@ async function check_inverse(browser, folder, run, troubles) {
 
 check_log_ticks();
 check_names();
+check_names_of_lines();
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
   for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_one_at_a_time, check_figures]) await check(browser, folder, run, troubles);

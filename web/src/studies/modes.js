@@ -9,6 +9,17 @@ const radians = m => 2 * Math.PI * m.hertz;
 // Equal blades have modes as what does not turn sees them, and those of the equations at one angle.
 const standing = 'where the rotor does not turn', turning = 'the blades, at one angle';
 
+// A line without what is below `floor`: where it passes that it has a point that is no mode.
+function cut(points, floor) {
+  const below = p => p && p[1] != null && p[1] < floor, out = [];
+  points.forEach((p, i) => {
+    const q = points[i - 1];
+    if (q && q[1] != null && p[1] != null && below(q) !== below(p)) out.push([q[0] + (floor - q[1]) / (p[1] - q[1]) * (p[0] - q[0]), floor, null]);
+    out.push(below(p) ? [p[0], null, null] : p);
+  });
+  return out;
+}
+
 export class Modes {
   constructor(holder, data) {
     const blades = Math.max(...data.runs.map(run => run.blades?.count ?? 0));
@@ -40,7 +51,7 @@ export class Modes {
   }
 
   words(stands) {
-    if (stands) return 'Modes of equal blades by the multi-blade transform: frequencies that an instrument on what does not turn sees, named after the blades\' coordinate and the way its pattern runs round. Modes of one name are branches in the order of frequency.';
+    if (stands) return 'Modes of equal blades by the multi-blade transform: frequencies that an instrument on what does not turn sees, named after the blades\' coordinate and the way its pattern runs round. Branches are followed by shape: a name is that at the beginning and, where it becomes another, at the end. What does not swing has the frequency 0. Triangles mark motions that grow.';
     const most = this.data.loops ? 'what takes part most, a coordinate or a state of a load' : 'the coordinate that holds most of the kinetic energy';
     return this.swept ? `Branches are followed by shape: a name is of ${most}, at the beginning and, where it becomes another, at the end. Triangles mark motions that grow. Click a mark for its shape.`
       : `A mode is named after ${most}. Click a row for its shape.`;
@@ -82,13 +93,15 @@ export class Modes {
     return this.branches.filter(b => !b.hidden).map(b => ({ b, points: b.at.map((m, i) => [this.data.values[i], m ? of(m) : null, m]) }));
   }
 
-  figure(label, of, { log = false, include, height = 330, right = 16 } = {}) {
-    const curves = this.values(of), all = curves.flatMap(c => c.points.map(p => p[1])).filter(v => v != null);
+  // Curves below `floor` are cut off there.
+  figure(label, of, { log = false, include, floor = null, height = 330, right = 16 } = {}) {
+    const curves = this.values(of).map(({ b, points }) => ({ b, points: floor == null ? points : cut(points, floor) }));
+    const all = curves.flatMap(c => c.points.map(p => p[1])).filter(v => v != null);
     const figure = new Figure({ height, right, x: { label: this.data.label, values: this.data.values, room: 0 }, y: { label, values: all, log, include } });
     for (const { b, points } of curves) {
       figure.line(points.map(([x, y]) => [x, log && !(y > 0) ? null : y]), { stroke: b.color, 'stroke-width': 1.8, 'stroke-dasharray': b.dash });
       for (const [x, y, m] of points) {
-        if (y == null || (log && !(y > 0))) continue;
+        if (y == null || !m || (log && !(y > 0))) continue;
         figure.mark(x, y, m.unstable ? 2 : 0, { fill: m.unstable ? 'var(--bad)' : b.color, small: !m.unstable }, () => this.about(b, m), () => this.choose(b, m));
       }
     }
@@ -127,22 +140,27 @@ export class Modes {
     return Array.from({ length: this.harmonics }, (_, k) => this.harmonics - k);
   }
 
-  // n times the rate: where a branch crosses one, n impulses a turn meet it.
+  // n times the rate: where a branch crosses one, n impulses a turn meet it. From 0 they rise to both sides.
   per_rev(figure) {
-    const { values, rate } = this.data, last = values.at(-1), top = figure.y.high;
+    const { values, rate } = this.data, low = Math.min(...values), high = Math.max(...values);
     for (const n of this.multiples()) {
-      const at = v => n * Math.abs(v) * rate / (this.unit === 'Hz' ? 2 * Math.PI : 1);
-      const end = at(last) > top ? last * top / at(last) : last;
-      if (at(last) === 0) continue;
-      // Under the branches, which their words must not cut.
-      figure.marks.prepend(figure.line([[values[0], at(values[0])], [end, at(end)]], { class: 'harmonic' }), figure.text(figure.x(end) - 4, figure.y(at(end)) + (end === last ? -4 : 12), `${n} per turn`, { class: 'harmonic', 'text-anchor': 'end' }));
+      const slope = n * rate / (this.unit === 'Hz' ? 2 * Math.PI : 1), reach = figure.y.high / slope;
+      for (const side of [1, -1]) {
+        const [near, far] = side > 0 ? [Math.max(low, 0), high] : [Math.min(high, 0), low];
+        const end = side * Math.min(side * far, reach);
+        if (!(side * near < side * end)) continue;
+        const word = figure.text(figure.x(end) - 4 * side, figure.y(slope * Math.abs(end)) + (end === far ? -4 : 12), `${n} per turn`, { class: 'harmonic', 'text-anchor': side > 0 ? 'end' : 'start' });
+        // Under the branches, which their words must not cut.
+        figure.marks.prepend(figure.line([[near, slope * Math.abs(near)], [end, slope * Math.abs(end)]], { class: 'harmonic' }), word);
+      }
     }
   }
 
-  // Names at the ends of branches, moved apart.
+  // Names at the right ends of branches, moved apart.
   label(figure, of) {
-    const ends = this.values(of).map(({ b, points }) => [b, points.filter(p => p[1] != null).at(-1)]).filter(([, p]) => p)
-      .map(([b, p]) => ({ b, y: figure.y(p[1]), from: figure.y(p[1]) })).sort((p, q) => p.y - q.y);
+    const rightmost = points => points.filter(p => p[1] != null).reduce((a, p) => (a && a[0] > p[0] ? a : p), null);
+    const ends = this.values(of).map(({ b, points }) => [b, rightmost(points)]).filter(([, p]) => p)
+      .map(([b, p]) => ({ b, y: figure.y(p[1]), from: figure.y(p[1]), end: figure.x(p[0]) })).sort((p, q) => p.y - q.y);
     for (let i = 1; i < ends.length; ++i) ends[i].y = Math.max(ends[i].y, ends[i - 1].y + 15);
     const over = ends.length ? Math.max(0, ends.at(-1).y - (figure.height - figure.bottom)) : 0;
     for (let i = ends.length - 1, most = Infinity; over > 0 && i >= 0; --i) {
@@ -150,7 +168,8 @@ export class Modes {
       most = ends[i].y - 15;
     }
     const x = figure.width - figure.right;
-    for (const { b, y, from } of ends) {
+    for (const { b, y, from, end } of ends) {
+      if (end < x - 1) figure.svg.append(draw('path', { d: `M${end} ${from}H${x}`, stroke: b.color, 'stroke-width': 0.7, 'stroke-dasharray': '1 4' }));
       figure.svg.append(draw('path', { d: `M${x} ${from}L${x + 14} ${y}`, stroke: b.color, fill: 'none', 'stroke-width': 1 }));
       figure.text(x + 18, y + 4, b.name.length > 30 ? `${b.name.slice(0, 29)}…` : b.name, { style: `fill: ${b.color}` });
     }
@@ -163,7 +182,10 @@ export class Modes {
   }
   growth() {
     if (!this.branches.some(b => b.at.some(m => m?.unstable))) return null;
-    return this.figure('growth [1/s]', m => m.unstable ? m.growth : 0).element;
+    const growth = this.branches.filter(b => !b.hidden).flatMap(b => b.at).filter(Boolean).map(m => m.growth);
+    // What decays by far faster than anything grows leaves the picture: the axis shows where growth begins.
+    const far = 4, greatest = Math.max(...growth);
+    return this.figure('growth [1/s]', m => m.growth, { floor: greatest > 0 ? Math.max(-far * greatest, Math.min(...growth)) : null, include: [0] }).element;
   }
 
   about(b, m) {

@@ -25,13 +25,14 @@ export class Sweep {
     const { cases, done, failed, failed_share } = this.data, said = element('div', null, { class: 'answer' });
     said.append(element('p', `${cases} cases: ${done} done, ${failed} of them failed${cases > done ? `, ${cases - done} missing` : ''}.`));
     if (failed > 0) said.append(element('p', `${number(100 * failed_share.value)} % failed; with 95 % confidence ${number(100 * failed_share.low)} to ${number(100 * failed_share.high)} %, were they drawn at random.`, { class: 'message' }));
-    if (this.data.counted_every > 1) said.append(element('p', `Distributions and envelopes are of every ${this.data.counted_every}th case; table.csv has all.`));
+    if (this.data.counted < cases) said.append(element('p', `Distributions and envelopes are of ${this.data.counted} cases, taken at random; table.csv has all.`));
     for (const c of this.results.slice(0, most_told)) {
       const told = number_within(c.least, c.greatest);
       said.append(element('p', `${c.name}: half of the cases are below ${told(c.median)}, 5 % below ${told(c.p05)}, 5 % above ${told(c.p95)}; least ${told(c.least)}, greatest ${told(c.greatest)}.`, { class: 'soft' }));
     }
     const note = text => said.append(element('p', text, { class: 'soft' }));
-    if (this.results.length > most_told) note(`${this.results.length - most_told} results more are below.`);
+    const more = this.results.length - most_told;
+    if (more > 0) note(more > 1 ? `${more} more results are below.` : 'One more result is below.');
     const not_drawn = this.data.columns.filter(c => c.role !== 'result' && !c.numeric).map(c => c.name);
     if (not_drawn.length) note(`In no figure, for no numbers or one value in all cases: ${not_drawn.join(', ')}.`);
     this.holder.append(said);
@@ -65,7 +66,7 @@ export class Sweep {
   histograms(colours) {
     return [...this.results, ...this.varied].map(c => {
       const { bins, least, greatest } = c, width = (greatest - least) / bins.length || 1;
-      const figure = new Figure({ title: c.name, width: 420, height: 250, x: { label: c.name, values: [least, greatest], room: 0.02 }, y: { label: 'cases', values: bins, include: [0] } });
+      const figure = new Figure({ title: c.name, width: 420, height: 250, x: { label: c.name, values: [least, greatest], room: 0.02 }, y: { label: 'cases', values: bins, include: [0], room: c.role === 'result' ? room_of_names : 0.05 } });
       bins.forEach((count, i) => {
         if (!(count > 0)) return;
         // All cases may have one value: a bar about it.
@@ -75,10 +76,10 @@ export class Sweep {
         answers(bar, () => [`${count} cases`, one ? number(least) : `${number(least + i * width)} to ${number(least + (i + 1) * width)}`]);
         figure.marks.append(bar);
       });
-      if (c.role === 'result') for (const [v, name] of [[c.p05, '5 %'], [c.median, 'median'], [c.p95, '95 %']]) {
-        figure.marks.append(draw('line', { x1: figure.x(v), x2: figure.x(v), y1: figure.top, y2: figure.height - figure.bottom, class: 'limit' }));
-        const late = figure.x(v) > figure.width - figure.right - 40;
-        figure.text(figure.x(v) + (late ? -3 : 3), figure.top + 11, name, { class: 'soft', 'text-anchor': late ? 'end' : 'start' });
+      if (c.role === 'result') {
+        const lines = [[c.p05, '5 %'], [c.median, 'median'], [c.p95, '95 %']].map(([v, name]) => ({ x: figure.x(v), name }));
+        for (const { x } of lines) figure.marks.append(draw('line', { x1: x, x2: x, y1: figure.top, y2: figure.height - figure.bottom, class: 'limit' }));
+        for (const { x, name, anchor } of names_beside(lines, figure.left, figure.width - figure.right)) figure.text(x, figure.top + 11, name, { class: 'soft', 'text-anchor': anchor });
       }
       return figure.element;
     });
@@ -200,14 +201,14 @@ export class Sweep {
     const beside = element('div', null, { class: 'beside' });
     beside.append(this.matrix(all.filter(c => this.pairs.has(c)), colours), this.card);
     if (!this.card.childElementCount) this.card.append(element('h2', 'Case'), element('p', 'Click a point.', { class: 'soft' }));
-    const every = this.data.sample.every;
-    holder.append(bar, element('p', `Completed cases as points, failed ones as crosses where both values are known${every > 1 ? `; every ${every}th of the cases` : ''}.`, { class: 'soft' }), beside);
+    const { most, of } = this.data.sample;
+    holder.append(bar, element('p', `Completed cases as points, failed ones as crosses where both values are known${most < of ? `; ${most} of the ${of} cases, taken at random` : ''}.`, { class: 'soft' }), beside);
     return holder;
   }
 
   matrix(columns, colours) {
     const n = columns.length, cell = Math.max(110, Math.min(250, 840 / Math.max(1, n))), left = 64, bottom = 46, size = n * cell;
-    const svg = draw('svg', { viewBox: `0 0 ${left + size + 6} ${size + bottom + 6}`, role: 'img', 'aria-label': 'Scatter of every pair' });
+    const svg = draw('svg', { viewBox: `0 0 ${left + size + 6} ${size + bottom + 6}`, role: 'img', 'aria-label': 'Scatter of every pair', style: `max-width: ${left + size + 6}px` });
     const place = name => this.data.columns.findIndex(c => c.name === name);
     const scales = columns.map(c => scale_of([c.least, c.greatest], { from: 6, to: cell - 6, room: 0 }));
     columns.forEach((y, i) => columns.forEach((x, j) => {
@@ -286,6 +287,26 @@ export class Sweep {
     frame.append(table_of([['case', r => r.case], ['status', r => r.status], ['why', r => r.message], ['to run it alone', r => r.command]], this.data.failures));
     return frame;
   }
+}
+
+// Of a histogram's height, for the names of its lines above the bars.
+const room_of_names = 0.12;
+
+// Names of vertical lines, from left to right, each beside its line and within the frame; lines whose names would run into
+// each other have one name together. A letter is some 6.5 wide.
+export function names_beside(lines, left, right) {
+  const placed = ({ x, name }) => {
+    const width = 6.5 * name.length + 6;
+    if (x + width <= right) return { x: x + 3, name, anchor: 'start', from: x, to: x + width };
+    const end = x - width >= left ? x : right;
+    return { x: end - 3, name, anchor: 'end', from: end - width, to: end };
+  };
+  let groups = lines, all = groups.map(placed);
+  for (let k; (k = all.findIndex((g, i) => i > 0 && g.from < all[i - 1].to)) > 0; all = groups.map(placed)) {
+    const [a, b] = [groups[k - 1], groups[k]];
+    groups = [...groups.slice(0, k - 1), { x: a.x, name: `${a.name}, ${b.name}` }, ...groups.slice(k + 1)];
+  }
+  return all;
 }
 
 // What stands behind figures of which some only are on the page.
