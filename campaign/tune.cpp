@@ -168,6 +168,7 @@ class TuneSearch {
 
   void report(const MatchedRun& start);
   void add_parameters();
+  [[nodiscard]] double share(std::size_t parameter) const;
   void add_deviations(const VectorXd& residuals);
   void count_agreeing();
 
@@ -193,6 +194,13 @@ void TuneSearch::report(const MatchedRun& start) {
   count_agreeing();
 }
 
+/// How much of a value a change of its coordinate by 1 is, upwards in size; of one that is zero, how much of its scale.
+double TuneSearch::share(std::size_t parameter) const {
+  const TunedValue& t = m_.tuned[parameter];
+  const double z = z_[static_cast<Index>(parameter)], value = t.value(z);
+  return t.slope(z) / (value == 0 ? t.scale : value);
+}
+
 /// Values with the digits that a scene is written with.
 void TuneSearch::add_parameters() {
   constexpr double near = 1e-3;
@@ -205,7 +213,8 @@ void TuneSearch::add_parameters() {
     for (const Undetermined& u : undetermined_) {
       if (u.coordinate != i) continue;
       fitted.state = FittedValue::State::undetermined;
-      fitted.same_as = u.same_as;
+      for (const auto& [other, factor] : u.same_as)
+        fitted.same_as.emplace_back(other, factor * share(other) / share(i));
     }
     result_.parameters.push_back(std::move(fitted));
   }

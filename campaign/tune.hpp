@@ -38,8 +38,8 @@ struct FittedValue {
   State state = State::fitted;
   double value = 0;                 ///< in the unit of `tuned`
   std::optional<double> deviation;  ///< standard deviation in that unit; of fitted ones
-  /// Of undetermined ones: parameters whose relative change by the factor has the effect of a change of this one by 1
-  /// (of those without logarithmic coordinate in units of their scale); none: it has no effect on the data.
+  /// Of undetermined ones: parameters whose change by the factor has the effect of a change of this one by 1, each in
+  /// units of its value at the end, or of its scale where that is 0; none: it has no effect on the data.
   std::vector<std::pair<std::size_t, double>> same_as;
 };
 

@@ -35,14 +35,22 @@ std::string columns_text(const TuneResult& result) {
   return table.str();
 }
 
+/// "1 % more", "0.42 % less"; of a value that is zero, of which no per cents are, "0.01 rad more".
+std::string change_text(const FittedValue& p, double factor) {
+  const char* direction = factor > 0 ? "more" : "less";
+  if (p.value != 0) return fmt::format("{:.2g} % {}", std::abs(factor), direction);
+  return fmt::format("{:.2g}{}{} {}", std::abs(factor) * p.tuned.scale / 100, p.tuned.unit.empty() ? "" : " ",
+                     p.tuned.unit, direction);
+}
+
 /// "1 % more of it does the same as 1 % less of loads.spring.stiffness".
 std::string sameness_text(const TuneResult& result, const FittedValue& p) {
   if (p.same_as.empty()) return "it has no effect on these columns";
   std::string text;
   for (const auto& [other, factor] : p.same_as)
-    text += fmt::format("{}{:.2g} % {} of {}", text.empty() ? "" : " and ", std::abs(factor),
-                        factor > 0 ? "more" : "less", result.parameters[other].tuned.path);
-  return "1 % more of it does the same as " + text;
+    text += fmt::format("{}{} of {}", text.empty() ? "" : " and ", change_text(result.parameters[other], factor),
+                        result.parameters[other].tuned.path);
+  return change_text(p, 1) + " of it does the same as " + text;
 }
 
 std::string undetermined_text(const TuneResult& result) {

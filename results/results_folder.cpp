@@ -14,24 +14,36 @@
 
 #include "withy/results/json_text.hpp"
 #include "withy/results/make_folder.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/scene/sha256.hpp"
+#include "withy/study/input_error.hpp"
 
 namespace withy {
 namespace {
 
 using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
 
 constexpr const char* format_of_record = "withy-result/1";
 constexpr const char* name_of_record = "result.json";
 constexpr std::size_t longest_suffix = 100;
 
+std::string text_of_record(const std::filesystem::path& folder) {
+  std::ifstream in(folder / name_of_record, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 /// What a folder says of itself; null where it says nothing, or nothing that can be read.
 Json read_record(const std::filesystem::path& folder) {
-  std::ifstream in(folder / name_of_record, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  Json j = Json::parse(text, nullptr, false);
+  Json j = Json::parse(text_of_record(folder), nullptr, false);
   return j.is_object() && j.value("format", "") == format_of_record ? j : Json();
+}
+
+/// Whether `result.json` is no record, nor what is left of one.
+bool is_foreign(const std::filesystem::path& folder) {
+  const std::string text = text_of_record(folder);
+  return !text.empty() && text.find(format_of_record) == std::string::npos;
 }
 
 std::vector<std::string> recorded_content(const Json& record) {
@@ -71,7 +83,8 @@ std::vector<std::string> united(std::vector<std::string> names, const std::vecto
 std::string refusal(const std::filesystem::path& folder, const Json& kept, const Json& now,
                     const std::vector<std::string>& content) {
   constexpr const char* advice = "give another folder, or --force to replace it";
-  const std::vector<std::string> there = present(folder, kept.is_null() ? content : recorded_content(kept));
+  std::vector<std::string> there = present(folder, kept.is_null() ? content : recorded_content(kept));
+  if (is_foreign(folder)) there.emplace_back(name_of_record);
   if (there.empty() || same_result(kept, now)) return {};
   if (kept.is_null())
     return fmt::format("{} holds {}, and nothing says of what result: {}", folder.string(), there.front(), advice);
@@ -82,6 +95,36 @@ std::string refusal(const std::filesystem::path& folder, const Json& kept, const
   if (scene != now.at("scene"))
     return fmt::format("{} holds the result of another scene, {}: {}", folder.string(), scene, advice);
   return fmt::format("{} holds the result of other values of {}: {}", folder.string(), scene, advice);
+}
+
+/// Files that a command reads: those that its result comes from, and more.
+std::vector<fs::path> inputs_of(const Provenance& provenance, const std::vector<fs::path>& more) {
+  const fs::path scene = provenance.scene;
+  std::vector<fs::path> all{scene};
+  for (const FileUsed& file : provenance.sources.files) all.push_back(scene.parent_path() / file.path);
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// Whether a file is somewhere in a folder, wherever links lead.
+bool is_in(const fs::path& file, const fs::path& folder) {
+  std::error_code failed;
+  const fs::path inner = fs::canonical(file, failed), outer = fs::canonical(folder, failed);
+  if (failed) return false;
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+/// \throws study::InputError where one of the names is a file that is read, or a folder that one stands in
+void keep_inputs_in(const fs::path& folder, const std::vector<std::string>& names, const std::vector<fs::path>& read) {
+  std::error_code ignored;
+  for (const std::string& name : names) {
+    keep_inputs(folder / name, read);
+    if (!fs::is_directory(folder / name, ignored)) continue;
+    for (const fs::path& file : read)
+      if (is_in(file, folder / name))
+        throw study::InputError(fmt::format("{} holds {}, which is read by this command; name another folder",
+                                            (folder / name).string(), file.string()));
+  }
 }
 
 /// Why a result goes on otherwise than it began.
@@ -97,41 +140,48 @@ std::string change(const Json& kept, const Provenance& now) {
 }  // namespace
 
 ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& command, const Provenance& provenance,
-                             const std::vector<std::string>& content, FolderUse use)
+                             const std::vector<std::string>& content, FolderUse use,
+                             const std::vector<std::filesystem::path>& read)
     : path_(std::move(path)) {
   make_folder(path_);
   lock();
   try {
-    const Json kept = read_record(path_);
-    Json now = stored_provenance(provenance);
-    now["format"] = format_of_record;
-    now["command"] = command;
-    now["subject"] = provenance.subject();
-    now["content"] = content;
-    now["process"] = ::getpid();
-    if (use == FolderUse::begin)
-      if (const std::string why = refusal(path_, kept, now, content); !why.empty()) {
-        if (std::filesystem::is_empty(path_ / name_of_record)) std::filesystem::remove(path_ / name_of_record);
-        throw ResultsError(why);
-      }
-    changed_ = change(kept, provenance);
-    if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
-    std::vector<std::string> old = content;
-    if (use != FolderUse::go_on && !same_result(kept, now)) {
-      const std::vector<std::string> other = recorded_content(kept);
-      old.insert(old.end(), other.begin(), other.end());
-    } else {
-      now["content"] = united(recorded_content(kept), content);
-    }
-    if (use != FolderUse::go_on) {
-      for (const std::string& name : old)
-        if (is_inside(name)) std::filesystem::remove_all(path_ / name);
-    }
-    write(json_text(now));
+    take(command, provenance, content, use, read);
   } catch (...) {
+    std::error_code ignored;
+    if (std::filesystem::is_empty(path_ / name_of_record, ignored))
+      std::filesystem::remove(path_ / name_of_record, ignored);
     ::close(file_);
     throw;
   }
+}
+
+void ResultsFolder::take(const std::string& command, const Provenance& provenance,
+                         const std::vector<std::string>& content, FolderUse use,
+                         const std::vector<std::filesystem::path>& read) {
+  const Json kept = read_record(path_);
+  Json now = stored_provenance(provenance);
+  now["format"] = format_of_record;
+  now["command"] = command;
+  now["subject"] = provenance.subject();
+  now["content"] = content;
+  now["process"] = ::getpid();
+  if (use == FolderUse::begin)
+    if (const std::string why = refusal(path_, kept, now, content); !why.empty()) throw ResultsError(why);
+  changed_ = change(kept, provenance);
+  if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
+  std::vector<std::string> old = content;
+  if (use != FolderUse::go_on && !same_result(kept, now)) {
+    old = united(old, recorded_content(kept));
+  } else {
+    now["content"] = united(recorded_content(kept), content);
+  }
+  std::erase_if(old, [](const std::string& name) { return !is_inside(name); });
+  if (use != FolderUse::go_on) {
+    keep_inputs_in(path_, united({name_of_record}, old), inputs_of(provenance, read));
+    for (const std::string& name : old) std::filesystem::remove_all(path_ / name);
+  }
+  write(json_text(now));
 }
 
 ResultsFolder::~ResultsFolder() { ::close(file_); }

@@ -29,10 +29,13 @@ class ResultsFolder {
  public:
   /// Makes the folder where it is not there.
   /// \param content what the result consists of: names in the folder, and of this alone something is removed
+  /// \param read files that the command reads beside those of its provenance; none of either is removed
   /// \throws FolderBusy; ResultsError where the folder holds another command's, scene's or values' result, or such
-  /// names without saying whose they are, and `use` is `begin`; std::system_error
+  /// names without saying whose they are, and `use` is `begin`; study::InputError where one of the names is a file that
+  /// is read, or a folder that it stands in, and `use` is not `go_on`; std::system_error
   ResultsFolder(std::filesystem::path path, const std::string& command, const Provenance& provenance,
-                const std::vector<std::string>& content, FolderUse use);
+                const std::vector<std::string>& content, FolderUse use,
+                const std::vector<std::filesystem::path>& read = {});
   ~ResultsFolder();
   ResultsFolder(const ResultsFolder&) = delete;
   ResultsFolder& operator=(const ResultsFolder&) = delete;
@@ -46,6 +49,8 @@ class ResultsFolder {
 
  private:
   void lock();
+  void take(const std::string& command, const Provenance& provenance, const std::vector<std::string>& content,
+            FolderUse use, const std::vector<std::filesystem::path>& read);
   void write(const std::string& text) const;
 
   std::filesystem::path path_;

@@ -27,7 +27,7 @@ ExitStatus inverse(const InverseArguments& given) {
   std::vector<std::string> content = run_content();
   content.emplace_back("inverse.svg");
   const Provenance provenance = provenance_of(led.scene, engine.plugins());
-  const auto taken = take_folder(arguments, "inverse", provenance, content);
+  const auto taken = take_folder(arguments, "inverse", provenance, content, arguments.motion);
   const study::RunSettings settings = study.run_settings(run_control(led.scene.formulation_name));
   const RunSummary summary = record_run(folder, led, engine.registry(), provenance, settings).run.summary;
   const Scene& scene = led.scene;

@@ -16,8 +16,8 @@ struct LinearizeArguments : ConfigurationArguments, OutputArguments {
 ExitStatus linearize(const LinearizeArguments& arguments) {
   const Engine engine(arguments);
   const study::Configuration c = configuration_of(engine, arguments);
-  const auto folder =
-      take_folder(arguments, "linearize", provenance_of(engine.scene(), engine.plugins()), linear_model_content());
+  const auto folder = take_folder(arguments, "linearize", provenance_of(engine.scene(), engine.plugins()),
+                                  linear_model_content(), arguments.state);
   try {
     const study::LinearModel linear = study::linear_model(c, {arguments.inputs, arguments.outputs});
     const nlohmann::ordered_json json = linear_model_json(c, linear);

@@ -51,8 +51,9 @@ ExitStatus modes(const ModesArguments& arguments) {
     throw InputError("--write writes what --damp finds: give that too");
   const Engine engine(arguments);
   check_write(arguments.write, arguments, engine);
-  const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
-                                  {"modes.json", "modes.csv", "modes.svg", "blades.csv", "blades.svg", report_name});
+  const auto folder =
+      take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
+                  {"modes.json", "modes.csv", "modes.svg", "blades.csv", "blades.svg", report_name}, arguments.state);
   question.holding = study::read_holding(engine.model(), arguments.lock, arguments.spin);
   const study::ModesFound all = find_modes(engine.prepared(), engine.registry(), question, study_control);
   if (all.interrupted) return ExitStatus::interrupted;

@@ -20,8 +20,8 @@ ExitStatus respond(const ResponseArguments& given) {
   arguments.outputs = {arguments.question.output};
   const Engine engine(arguments);
   const study::Configuration c = configuration_of(engine, arguments);
-  const auto folder =
-      take_folder(arguments, "response", provenance_of(engine.scene(), engine.plugins()), response_content());
+  const auto folder = take_folder(arguments, "response", provenance_of(engine.scene(), engine.plugins()),
+                                  response_content(), arguments.state);
   try {
     const study::Response r = study::response(c, arguments.question);
     if (folder != nullptr) write_response(folder->path(), c, r);

@@ -5,10 +5,12 @@
 namespace withy::app {
 
 std::unique_ptr<ResultsFolder> take_folder(const OutputArguments& arguments, const std::string& command,
-                                           const Provenance& provenance, const std::vector<std::string>& content) {
+                                           const Provenance& provenance, const std::vector<std::string>& content,
+                                           const std::string& read) {
   if (arguments.out.empty()) return nullptr;
   return std::make_unique<ResultsFolder>(arguments.out, command, provenance, content,
-                                         arguments.force ? FolderUse::replace : FolderUse::begin);
+                                         arguments.force ? FolderUse::replace : FolderUse::begin,
+                                         std::vector<std::filesystem::path>{read});
 }
 
 Provenance provenance_of(const Scene& scene, const Plugins& plugins) {

@@ -10,10 +10,12 @@
 namespace withy::app {
 
 /// Takes the folder of the command line; null where none is asked for.
-/// \param content of the folder, as ResultsFolder has it
-/// \throws ResultsError, FolderBusy, std::system_error
+/// \param content of the folder, as ResultsFolder has it \param read a file that the command reads beside those of its
+/// scene; may be empty
+/// \throws ResultsError, FolderBusy, InputError, as ResultsFolder; std::system_error
 std::unique_ptr<ResultsFolder> take_folder(const OutputArguments& arguments, const std::string& command,
-                                           const Provenance& provenance, const std::vector<std::string>& content);
+                                           const Provenance& provenance, const std::vector<std::string>& content,
+                                           const std::string& read = {});
 
 /// What results of the scene come from.
 Provenance provenance_of(const Scene& scene, const Plugins& plugins);

@@ -21,8 +21,8 @@ ExitStatus tune(const TuneArguments& arguments) {
   const Engine engine(arguments);
   check_write(arguments.write, arguments, engine, arguments.question.data);
   const std::string title = engine.prepared().title();
-  const auto folder =
-      take_folder(arguments, "tune", provenance_of(engine.scene(), engine.plugins()), campaign::tune_content());
+  const auto folder = take_folder(arguments, "tune", provenance_of(engine.scene(), engine.plugins()),
+                                  campaign::tune_content(), arguments.question.data);
   campaign::TuneQuestion question = arguments.question;
   question.control = study_control("tune, starts");
   const campaign::TuneResult result = campaign::tune(engine.prepared(), engine.registry(), question);

@@ -180,6 +180,29 @@ TEST(Tune, KeepsUnitsAndTheSameBitsWhateverTheJobs) {
   EXPECT_EQ(one.parameters[2].tuned.start, 20);
 }
 
+/// An angle tells m g l/(I + m l²) alone: a part dm/m is made up for by dl/l = −I/(I − m l²) dm/m, with the l that was
+/// found, whatever the scene says, and where l is a coordinate that is negative.
+TEST(Tune, TellsPartsOfTheValuesFoundThatDoTheSame) {
+  for (const double start : {-0.5, -0.4}) {
+    SceneValues values = SceneValues::read(WITHY_SOURCES "/scenes/pendulum.yaml");
+    values.set("bodies.rod.center_of_mass.1", Value(start), "a test");
+    TuneQuestion question;
+    question.parameters = {"bodies.rod.center_of_mass.1=-0.8..-0.2", "initial.hinges.pivot.position.0",
+                           "bodies.rod.mass"};
+    question.data = WITHY_SOURCES "/scenes/measured/pendulum.csv";
+    const TuneResult result = tune(study::prepare(std::move(values), test::plugins()), test::plugins(), question);
+    ASSERT_TRUE(result.converged()) << result.trouble;
+    const FittedValue& mass = result.parameters[2];
+    ASSERT_EQ(mass.state, State::undetermined);
+    ASSERT_EQ(mass.same_as.size(), 1U);
+    EXPECT_EQ(mass.same_as[0].first, 0U);
+    const double inertia = 0.1, of_offset = 1.2 * std::pow(result.parameters[0].value, 2);
+    EXPECT_NEAR(mass.same_as[0].second, inertia / (inertia - of_offset), 0.005) << start;
+    EXPECT_THAT(tune_text(result, "rod"),
+                HasSubstr("1 % more of it does the same as 0.42 % less of bodies.rod.center"));
+  }
+}
+
 TEST(Tune, NamesWhatTheDataCannotTellApart) {
   const TuneFolder folder;
   folder.measure({}, 1e-4, 1);

@@ -114,6 +114,45 @@ TEST(ResultsFolder, FilesOfUnknownOriginAreLeftAlone) {
   EXPECT_EQ(scratch.read("victim"), "kept") << "a record is no order to remove files elsewhere";
 }
 
+/// A `result.json` of somebody else is a file like any other; what is left of a record that was being written is not.
+TEST(ResultsFolder, ARecordOfSomebodyElseIsLeftAlone) {
+  const Scratch scratch;
+  scratch.write("out/result.json", "{\"mine\": \"measurements\"}");
+  EXPECT_THAT(refusal(scratch / "out", "run", origin()),
+              HasSubstr("holds result.json, and nothing says of what result"));
+  EXPECT_EQ(scratch.read("out/result.json"), "{\"mine\": \"measurements\"}");
+  EXPECT_EQ(refusal(scratch / "out", "run", origin(), FolderUse::replace), "");
+  const std::string record = scratch.read("out/result.json");
+  scratch.write("out/result.json", record.substr(0, record.size() - 3));
+  EXPECT_EQ(refusal(scratch / "out", "run", origin()), "");
+}
+
+/// Whatever the folder holds and --force says: neither the scene, nor a file that it names, nor another one.
+TEST(ResultsFolder, RemovesNothingThatTheCommandReads) {
+  const Scratch scratch;
+  Provenance p = origin();
+  p.scene = (scratch / "out/result.json").string();
+  p.sources.files = {{"results.csv", "f"}};
+  const std::vector<std::string> names = {"run.json", "results.csv", "exact"};
+  for (const char* name : {"result.json", "results.csv", "run.json", "exact/fit.csv"}) {
+    scratch.write(std::string("out/") + name, "input");
+    const std::filesystem::path more = scratch / (std::string("out/") + name);
+    Provenance elsewhere = origin();
+    elsewhere.scene = (scratch / "arm.yaml").string();
+    const bool by_scene = more.filename() == "result.json" || more.filename() == "results.csv";
+    for (const FolderUse use : {FolderUse::begin, FolderUse::replace}) {
+      EXPECT_ANY_THROW(ResultsFolder(scratch / "out", "run", elsewhere, names, use, {more})) << name;
+      if (by_scene) {
+        EXPECT_ANY_THROW(ResultsFolder(scratch / "out", "run", p, names, use)) << name;
+      }
+    }
+    EXPECT_THROW(ResultsFolder(scratch / "out", "run", elsewhere, names, FolderUse::replace, {more}),
+                 study::InputError);
+    EXPECT_EQ(scratch.read(std::string("out/") + name), "input");
+    std::filesystem::remove_all(scratch / "out");
+  }
+}
+
 TEST(ResultsFolder, SaysWhatHasChangedSinceItWasWritten) {
   const Scratch scratch;
   EXPECT_EQ(refusal(scratch / "out", "run", origin()), "");
