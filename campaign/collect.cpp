@@ -65,15 +65,24 @@ class Table {
         file_(part_) {
     clear_parts(path_);
   }
+  /// What is not finished is cleared away: it would hold the space that there was too little of.
+  ~Table() {
+    std::error_code ignored;
+    if (!finished_) std::filesystem::remove(part_, ignored);
+  }
+  Table(const Table&) = delete;
+  Table& operator=(const Table&) = delete;
   void line(const std::string& text) { file_.write(text + '\n'); }
   void finish() {
     file_.close();
     std::filesystem::rename(part_, path_);
+    finished_ = true;
   }
 
  private:
   std::filesystem::path path_, part_;
   OutputFile file_;
+  bool finished_ = false;
 };
 
 /// Empty where the scene's own value stays, "null" where it is taken away.

@@ -20,6 +20,7 @@
 #include "withy/campaign/store.hpp"
 #include "withy/campaign/trials.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/output_name.hpp"
 #include "withy/results/provenance.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/scene/asked_outputs.hpp"
@@ -74,7 +75,7 @@ class PlanBuilder {
     if (plan_.base == nullptr) return std::move(plan_);
     check_derived(plan_, registry_, problems_);
     check_kept();
-    if (good) plan_.fingerprint = fingerprint();
+    if (good) finish();
     return std::move(plan_);
   }
 
@@ -304,13 +305,16 @@ class PlanBuilder {
                          most_history_numbers));
   }
 
-  [[nodiscard]] std::string fingerprint() const {
+  /// What it was read from, and what tells it from others.
+  void finish() {
     Json said = Json::object();
     for (const auto& [key, value] : root_.members())
       if (key != "name" && key != "scene" && key != "failures") said[key] = value_json(value);
     Scene scene = plan_.base->scene;
     scene.sources = plan_.sources;
-    return sha256(json_line(Json::array({said, lists_, withy::provenance_of(scene).fingerprint()})));
+    plan_.files = files_of(scene, plan_.file);
+    for (const auto& [list, grid] : grid_of_file_) plan_.files.emplace_back(list);
+    plan_.fingerprint = sha256(json_line(Json::array({said, lists_, withy::provenance_of(scene).fingerprint()})));
   }
 
   const Value& root_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,6 +64,7 @@ struct Plan {
   std::shared_ptr<const study::Prepared> base;     ///< the scene with what `set` says
   std::vector<std::pair<std::string, Value>> set;  ///< what `set` says
   SceneSources sources;                            ///< of the scene, and of what stands in the plan in its place
+  std::vector<std::filesystem::path> files;        ///< that it was read from: plan, scene, lists and what these name
   std::vector<Axis> axes;                          ///< in the order of the plan
   std::vector<std::size_t> grids;                  ///< number of points of each; lists in one file are one grid
   Design design = Design::product;

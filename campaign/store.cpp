@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <fstream>
@@ -19,6 +20,8 @@
 #include "withy/campaign/plan_reader.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/make_folder.hpp"
+#include "withy/results/output_name.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/results_folder.hpp"
 #include "withy/results/run_command.hpp"
@@ -32,6 +35,11 @@ using Json = nlohmann::ordered_json;
 constexpr const char* format_of_store = "withy-store/2";
 constexpr const char* name_of_description = "store.json";
 constexpr const char* name_of_segments = "segments";
+constexpr const char* name_of_lock = "store.lock";
+/// Files that a store has beside its segments.
+constexpr std::array<const char*, 8> names_of_files = {name_of_description, "table.csv",  "statistics.csv",
+                                                       "indices.csv",       "failed.csv", "histories.csv",
+                                                       "histories.svg",     report_name};
 constexpr std::uint64_t most_in_block = std::uint64_t{64} << 20;  // bytes of records that are read at once
 constexpr int place_bits = 44;  // of a place in a segment: 16 TiB; the rest counts segments, to a million
 
@@ -129,6 +137,37 @@ bool is_of_another(const std::filesystem::path& segment, Shard shard) {
   return name.find(end) != std::string::npos && !name.starts_with(fmt::format("{}{}", shard.number, end));
 }
 
+/// What is there that a store would replace, and none has left: a file by its name, or others in the place of segments.
+std::string foreign_in(const std::filesystem::path& store) {
+  std::error_code none;
+  for (const char* name : names_of_files)
+    if (std::filesystem::exists(store / name, none)) return name;
+  const std::filesystem::path segments = store / name_of_segments;
+  const bool vacant = !std::filesystem::exists(segments, none) || std::filesystem::is_empty(segments, none);
+  return vacant ? "" : name_of_segments;
+}
+
+/// One process at a time makes a store, as long as this lives. The file stays: whoever waits for it has it open.
+class StoreLock {
+ public:
+  /// \throws std::system_error
+  explicit StoreLock(const std::filesystem::path& path)
+      : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    int locked = file_ < 0 ? -1 : ::flock(file_, LOCK_EX);
+    while (file_ >= 0 && locked != 0 && errno == EINTR) locked = ::flock(file_, LOCK_EX);
+    if (locked == 0) return;
+    const int error = errno;
+    if (file_ >= 0) ::close(file_);
+    throw std::system_error(error, std::generic_category(), path.string());
+  }
+  ~StoreLock() { ::close(file_); }
+  StoreLock(const StoreLock&) = delete;
+  StoreLock& operator=(const StoreLock&) = delete;
+
+ private:
+  int file_;
+};
+
 /// Two runs of one case differ in their times alone.
 bool same(CaseResult a, CaseResult b) {
   a.seconds = b.seconds = 0;
@@ -180,37 +219,67 @@ StoreDescription read_description(const std::filesystem::path& store) {
 
 Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
     : path_(std::move(path)), about_(description_of(plan)) {
-  const auto kept = described(path_);
-  if (kept && kept->fingerprint == about_.fingerprint && !anew) {
-    // The plan may have another file, title or plugins' folders by now: commands and pages name those of today.
-    if (text_of(*kept) != text_of(about_)) write_description(path_, about_);
-    return;
+  for (const char* name : names_of_files) keep_inputs(path_ / name, plan.files);
+  if (!anew && is_same()) return;
+  make_folder(path_);
+  // Shards may begin a store together: one makes it, and the others find it made.
+  const StoreLock lock(path_ / name_of_lock);
+  try {
+    if (!anew && goes_on()) return;
+  } catch (const ResultsError&) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path_ / name_of_description, ignored))
+      std::filesystem::remove(path_ / name_of_lock, ignored);  // the folder is somebody else's
+    throw;
   }
-  const char* advice = "give another folder, or --force to begin anew";
-  if (const auto segments = segments_of(path_); !anew && !kept && !segments.empty()) {
+  if (anew) clear();
+  make_folder(path_ / name_of_segments);
+  write_description(path_, about_);
+}
+
+/// Whether the folder is the store of the plan.
+bool Store::is_same() const {
+  const auto kept = described(path_);
+  if (!kept || kept->fingerprint != about_.fingerprint) return false;
+  // The plan may have another file, title or plugins' folders by now: commands and pages name those of today.
+  if (text_of(*kept) != text_of(about_)) write_description(path_, about_);
+  return true;
+}
+
+/// Whether the folder is the store of the plan, or what is left of it; false where nothing is there that a store would
+/// replace. \throws ResultsError where it is something else
+bool Store::goes_on() const {
+  constexpr const char* advice = "give another folder, or --force to begin anew";
+  if (is_same()) return true;
+  if (described(path_))
+    throw ResultsError(
+        fmt::format("{} holds the cases of another plan, or the plan, its scene, a plugin or the program has "
+                    "changed since: {}",
+                    path_.string(), advice));
+  if (const auto segments = segments_of(path_); !segments.empty()) {
     // Whose the cases are stands in the segments too, and the plan says the rest.
     for (const std::filesystem::path& segment : segments)
       if (!is_of(segment, about_.fingerprint))
         throw ResultsError(fmt::format("{} is damaged, or not there, and {} holds cases of another plan: {}",
                                        (path_ / name_of_description).string(), segment.string(), advice));
     write_description(path_, about_);
-    return;
+    return true;
   }
-  if (!anew && kept)
-    throw ResultsError(
-        fmt::format("{} holds the cases of another plan, or the plan, its scene, a plugin or the program has "
-                    "changed since: {}",
-                    path_.string(), advice));
-  if (!anew && std::filesystem::exists(path_ / "result.json"))
+  if (std::filesystem::exists(path_ / "result.json"))
     throw ResultsError(fmt::format("{} holds the result of another command: {}", path_.string(), advice));
-  for (const std::filesystem::path& segment : segments_of(path_))
+  if (const std::string name = foreign_in(path_); !name.empty())
+    throw ResultsError(fmt::format("{} holds {}, and nothing says of what result: {}", path_.string(), name, advice));
+  return false;
+}
+
+/// Removes what a store may have, and no other file. \throws FolderBusy
+void Store::clear() const {
+  const std::vector<std::filesystem::path> segments = segments_of(path_);
+  for (const std::filesystem::path& segment : segments)
     if (is_locked(segment))
       throw FolderBusy(segment.string() + " is being written by another process; wait for its end");
-  for (const char* name : {name_of_description, name_of_segments, "table.csv", "statistics.csv", "indices.csv",
-                           "failed.csv", "histories.csv", "histories.svg"})
-    std::filesystem::remove_all(path_ / name);
-  make_folder(path_ / name_of_segments);
-  write_description(path_, about_);
+  for (const std::filesystem::path& segment : segments) std::filesystem::remove(segment);
+  for (const char* name : names_of_files) std::filesystem::remove(path_ / name);
 }
 
 std::filesystem::path Store::segment(std::uint64_t shard, std::uint64_t shards, std::size_t worker) const {

@@ -92,9 +92,10 @@ class StoreIndex {
 /// A store that is written.
 class Store {
  public:
-  /// Makes the folder, or goes on with one that has the same fingerprint.
-  /// \param anew what another plan left there is removed
-  /// \throws ResultsError where the folder holds something else; FolderBusy; std::system_error
+  /// Makes the folder, or goes on with one that has the same fingerprint. Several processes may do so at once.
+  /// \param anew what another plan, or whoever, left there under names of a store is removed
+  /// \throws ResultsError where the folder holds something else; study::InputError where a file that the plan was read
+  /// from has a name of the store; FolderBusy; std::runtime_error where the folder cannot be made; std::system_error
   Store(std::filesystem::path path, const Plan& plan, bool anew);
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] const StoreDescription& about() const { return about_; }
@@ -102,6 +103,10 @@ class Store {
   [[nodiscard]] std::filesystem::path segment(std::uint64_t shard, std::uint64_t shards, std::size_t worker) const;
 
  private:
+  [[nodiscard]] bool is_same() const;
+  [[nodiscard]] bool goes_on() const;
+  void clear() const;
+
   std::filesystem::path path_;
   StoreDescription about_;
 };

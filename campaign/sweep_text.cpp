@@ -28,9 +28,11 @@ std::string outcome_text(const SweepOutcome& outcome, const SweepSettings& setti
                   outcome.ran, outcome.seconds, outcome.before);
   if (outcome.alone > 0 && !outcome.alone_because.empty())
     text += fmt::format("{} evaluated one at a time, not in lanes: {}\n", outcome.alone, outcome.alone_because);
-  if (outcome.failure)
-    text += fmt::format("{} failed, the first of them case {}: {}\n", outcome.failed, outcome.failure->index,
-                        outcome.failure->message);
+  if (outcome.failure) {
+    // A message of a scene names the case that its values come from.
+    const std::string who = fmt::format("case {}: ", outcome.failure->index), &why = outcome.failure->message;
+    text += fmt::format("{} failed, the first of them {}{}\n", outcome.failed, why.starts_with(who) ? "" : who, why);
+  }
   return text;
 }
 

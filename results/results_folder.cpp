@@ -27,18 +27,20 @@ constexpr const char* format_of_record = "withy-result/1";
 constexpr const char* name_of_record = "result.json";
 constexpr std::size_t longest_suffix = 100;
 
+std::string text_of_record(const std::filesystem::path& folder) {
+  std::ifstream in(folder / name_of_record, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 /// What a folder says of itself; null where it says nothing, or nothing that can be read.
 Json read_record(const std::filesystem::path& folder) {
-  std::ifstream in(folder / name_of_record, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  Json j = Json::parse(text, nullptr, false);
+  Json j = Json::parse(text_of_record(folder), nullptr, false);
   return j.is_object() && j.value("format", "") == format_of_record ? j : Json();
 }
 
-/// Whether the file in the place of the record is another's: it is none of this program, whole or cut short.
+/// Whether `result.json` is no record, nor what is left of one.
 bool is_foreign(const std::filesystem::path& folder) {
-  std::ifstream in(folder / name_of_record, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = text_of_record(folder);
   return !text.empty() && text.find(format_of_record) == std::string::npos;
 }
 
@@ -79,9 +81,8 @@ std::vector<std::string> united(std::vector<std::string> names, const std::vecto
 std::string refusal(const std::filesystem::path& folder, const Json& kept, const Json& now,
                     const std::vector<std::string>& content) {
   constexpr const char* advice = "give another folder, or --force to replace it";
-  if (kept.is_null() && is_foreign(folder))
-    return fmt::format("{} holds {}, which is not of Withy: {}", folder.string(), name_of_record, advice);
-  const std::vector<std::string> there = present(folder, kept.is_null() ? content : recorded_content(kept));
+  std::vector<std::string> there = present(folder, kept.is_null() ? content : recorded_content(kept));
+  if (is_foreign(folder)) there.emplace_back(name_of_record);
   if (there.empty() || same_result(kept, now)) return {};
   if (kept.is_null())
     return fmt::format("{} holds {}, and nothing says of what result: {}", folder.string(), there.front(), advice);
@@ -112,30 +113,7 @@ ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& comm
   make_folder(path_);
   lock();
   try {
-    const Json kept = read_record(path_);
-    Json now = stored_provenance(provenance);
-    now["format"] = format_of_record;
-    now["command"] = command;
-    now["subject"] = provenance.subject();
-    now["content"] = content;
-    now["process"] = ::getpid();
-    if (use == FolderUse::begin)
-      if (const std::string why = refusal(path_, kept, now, content); !why.empty()) throw ResultsError(why);
-    changed_ = change(kept, provenance);
-    if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
-    std::vector<std::string> old = content;
-    if (use != FolderUse::go_on && !same_result(kept, now)) {
-      const std::vector<std::string> other = recorded_content(kept);
-      old.insert(old.end(), other.begin(), other.end());
-    } else {
-      now["content"] = united(recorded_content(kept), content);
-    }
-    keep_inputs_in(path_, united(old, {name_of_record}), provenance.reads);
-    if (use != FolderUse::go_on) {
-      for (const std::string& name : old)
-        if (is_inside(name)) std::filesystem::remove_all(path_ / name);
-    }
-    write(json_text(now));
+    take(command, provenance, content, use);
   } catch (...) {
     std::error_code ignored;
     if (std::filesystem::is_empty(path_ / name_of_record, ignored))
@@ -143,6 +121,33 @@ ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& comm
     ::close(file_);
     throw;
   }
+}
+
+void ResultsFolder::take(const std::string& command, const Provenance& provenance,
+                         const std::vector<std::string>& content, FolderUse use) {
+  const Json kept = read_record(path_);
+  Json now = stored_provenance(provenance);
+  now["format"] = format_of_record;
+  now["command"] = command;
+  now["subject"] = provenance.subject();
+  now["content"] = content;
+  now["process"] = ::getpid();
+  if (use == FolderUse::begin)
+    if (const std::string why = refusal(path_, kept, now, content); !why.empty()) throw ResultsError(why);
+  changed_ = change(kept, provenance);
+  if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
+  std::vector<std::string> old = content;
+  if (use != FolderUse::go_on && !same_result(kept, now)) {
+    old = united(old, recorded_content(kept));
+  } else {
+    now["content"] = united(recorded_content(kept), content);
+  }
+  std::erase_if(old, [](const std::string& name) { return !is_inside(name); });
+  if (use != FolderUse::go_on) {
+    keep_inputs_in(path_, united({name_of_record}, old), provenance.reads);
+    for (const std::string& name : old) std::filesystem::remove_all(path_ / name);
+  }
+  write(json_text(now));
 }
 
 ResultsFolder::~ResultsFolder() { ::close(file_); }

@@ -47,6 +47,8 @@ class ResultsFolder {
 
  private:
   void lock();
+  void take(const std::string& command, const Provenance& provenance, const std::vector<std::string>& content,
+            FolderUse use);
   void write(const std::string& text) const;
 
   std::filesystem::path path_;

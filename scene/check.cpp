@@ -43,21 +43,71 @@ bool depends_on_hinge(const ParameterSpec& spec) {
   return depends(spec.unit) || std::any_of(spec.columns.begin(), spec.columns.end(), depends);
 }
 
-/// The specification with the units of a hinge that slides or turns.
-ParameterSpec at_hinge(ParameterSpec spec, bool slides) {
-  spec.unit = unit_at_hinge(spec.unit, slides);
-  for (std::string& unit : spec.columns) unit = unit_at_hinge(unit, slides);
-  return spec;
+/// The first name of a list, or the one that there is; empty where there is none.
+std::string first_name(const Value* names) {
+  if (names == nullptr) return {};
+  if (names->kind() == Value::Kind::list) return names->items().empty() ? "" : first_name(&names->items().front());
+  return names->kind() == Value::Kind::text ? names->text() : "";
 }
 
 }  // namespace
 
 Checker::Moves Checker::moves(const std::string& hinge, const Value& map) const {
-  if (map.has("of")) return Moves::either;
   if (names_ == nullptr) return Moves::turning;
   const Value* component = map.find("component");
   const double rate = component != nullptr && component->kind() == Value::Kind::number ? component->number() : 0;
   return names_->sliding.has(fmt::format("{}.{}", hinge, rate)) ? Moves::sliding : Moves::turning;
+}
+
+/// The unit of the first signal or input that is named; empty where it is not known.
+std::string Checker::unit_of_signal(const Value& names) const {
+  if (names_ == nullptr) return {};
+  const auto found = names_->units.find(first_name(&names));
+  return found == names_->units.end() ? std::string() : found->second;
+}
+
+/// What a map about a hinge or a signal is about; nothing of others, which are about what the map around them is.
+std::optional<Checker::Subject> Checker::subject(const Value& map) const {
+  const Value *of = map.find("of"), *to = map.find("to");
+  const std::string hinge = first_name(map.find("hinge"));
+  if (hinge.empty() && of == nullptr) return {};
+  const auto known = [](const std::string& unit, const char* turning, const char* sliding) {
+    return unit == turning ? Moves::turning : unit == sliding ? Moves::sliding : Moves::either;
+  };
+  Subject about{Moves::either, Moves::either, {}};
+  if (!hinge.empty())
+    about.driven = moves(hinge, map);
+  else if (to != nullptr)
+    about.driven = known(unit_of_signal(*to), "N m", "N");
+  if (of == nullptr) {
+    about.measured = about.driven;
+    return about;
+  }
+  about.unit = unit_of_signal(*of);
+  about.measured = known(about.unit, "rad", "m");
+  if (about.measured != Moves::either) about.unit.clear();
+  return about;
+}
+
+/// A unit as "rad|m" for the map at hand: of efforts by what is driven, of gains by both, of others by what is
+/// measured. As it is where that is not known.
+std::string Checker::unit_here(const std::string& unit) const {
+  if (unit.find('|') == std::string::npos) return unit;
+  const auto [measured, driven, signal] = subject_;
+  const std::string turning = unit_at_hinge(unit, false);
+  const bool effort = turning.starts_with("N m"), gain = effort && turning.find("rad") != std::string::npos;
+  if (unit == "rad|m" && !signal.empty()) return signal;
+  const Moves one = effort ? driven : measured;
+  if (one == Moves::either || (gain && measured == Moves::either)) return unit;
+  if (!gain || measured == driven) return unit_at_hinge(unit, one == Moves::sliding);
+  // A force for an angle, or a torque for a length.
+  return driven == Moves::sliding ? "N" + turning.substr(3) : "N m" + unit_at_hinge(unit, true).substr(1);
+}
+
+bool Checker::has_unit(const Value& value, const ParameterSpec& spec, bool slides) const {
+  ParameterSpec known = spec;
+  known.unit = unit_at_hinge(spec.unit, slides);
+  return check(value, known).has_value();
 }
 
 bool Checker::in_range(double x, const ParameterSpec& spec) {
@@ -248,12 +298,11 @@ bool Checker::read_members(const Value& value, std::initializer_list<const std::
                           key.ends_with(')') ? "; a formula with a comma needs quotes" : suggestion(key, known())));
     good = false;
   }
-  const Value* hinge = value.find("hinge");
-  const Moves outside = moves_;  // a motion of a hinge may stand in a map about it
-  if (hinge != nullptr && hinge->kind() == Value::Kind::text) moves_ = moves(hinge->text(), value);
+  const Subject outside = subject_;  // a motion of a hinge may stand in a map about it
+  if (std::optional<Subject> own = subject(value)) subject_ = std::move(*own);
   for (const auto* members : lists)
     for (const ParameterSpec& spec : *members) good = read_member(value, spec, result) && good;
-  moves_ = outside;
+  subject_ = outside;
   result.members().shrink_to_fit();  // it stays as long as the scene
   return good;
 }
@@ -275,8 +324,12 @@ Value Checker::default_with(const Value& elements, const Value& fallback) const 
 
 /// The member of a specification, or its default.
 bool Checker::read_member(const Value& value, const ParameterSpec& spec, Value& result) const {
-  if (moves_ != Moves::either && depends_on_hinge(spec))
-    return read_member(value, at_hinge(spec, moves_ == Moves::sliding), result);
+  if (depends_on_hinge(spec)) {
+    ParameterSpec here = spec;
+    here.unit = unit_here(spec.unit);
+    for (std::string& unit : here.columns) unit = unit_here(unit);
+    if (here.unit != spec.unit || here.columns != spec.columns) return read_member(value, here, result);
+  }
   const auto path = [&] { return value.place().path + "/" + spec.key; };
   const Value* member = value.find(spec.key);
   Value fallback;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -43,6 +44,8 @@ struct SceneNames {
   NameList places;
   NameList loads;
   NameList sliding;  ///< rates of hinges that are velocities, as "slide.0"; the others turn
+  /// SI units of hinges' columns, of outputs that loads may measure and of what inputs act with, by their names.
+  std::map<std::string, std::string> units;
   NameList signals;  ///< columns of hinges, outputs and loads, without what stands behind a dot of the latter two
   bool frames_complete = true;  ///< false where a body could not be made: any frame name is taken then
 };
@@ -75,8 +78,9 @@ class Checker {
   /// The value in SI units with defaults filled in; nothing where it, or anything in it, is wrong.
   /// A text specification that has a unit takes a name or a number in that unit; one that refers to a mode family takes
   /// its name or a map of its `name` and options, one that refers to a motion the same with `type`, which becomes a
-  /// map. A unit as "rad|m" is that of what the map's hinge does: the first where it turns, the second where it slides;
-  /// either where the map is about a signal, its `of`.
+  /// map. A unit as "rad|m" is that of what the map's hinge does: the first where it turns, the second where it slides.
+  /// Of a map about a signal, its `of`, it is the signal's, and an effort as "N m|N" that of its `hinge` or of the
+  /// input that it goes `to`; both are taken where that is not known.
   std::optional<Value> check(const Value& value, const ParameterSpec& spec) const;
   /// The same for a map with these members.
   std::optional<Value> check_members(const Value& value, const std::vector<ParameterSpec>& members) const;
@@ -95,6 +99,17 @@ class Checker {
     }
     return false;
   }
+
+  /// What `checked` returns, which checks maps of what may turn or slide: both units are taken.
+  template <class Checked>
+  auto of_either(const Checked& checked) const {
+    const Subject outside = std::exchange(subject_, {Moves::either, Moves::either, {}});
+    auto result = checked();
+    subject_ = outside;
+    return result;
+  }
+  /// Whether a value that was taken so has the unit of what turns or slides; reports where it has not.
+  bool has_unit(const Value& value, const ParameterSpec& spec, bool slides) const;
 
   Registry& registry() const { return registry_; }
   Diagnostics& diagnostics() const { return diagnostics_; }
@@ -126,9 +141,16 @@ class Checker {
   Value default_with(const Value& elements, const Value& fallback) const;
   bool read_member(const Value& value, const ParameterSpec& spec, Value& result) const;
   std::optional<Value> number(const Value& value, const ParameterSpec& spec, const std::string& unit) const;
-  /// What the rate does that a map is about: of its hinge and component, or of a signal.
   enum class Moves { turning, sliding, either };
+  /// What a map is about: what is measured and what is driven, of most the rate of one hinge.
+  struct Subject {
+    Moves measured = Moves::turning, driven = Moves::turning;
+    std::string unit;  ///< of a signal that is neither an angle nor a length; else empty
+  };
   [[nodiscard]] Moves moves(const std::string& hinge, const Value& map) const;
+  [[nodiscard]] std::string unit_of_signal(const Value& names) const;
+  [[nodiscard]] std::optional<Subject> subject(const Value& map) const;
+  [[nodiscard]] std::string unit_here(const std::string& unit) const;
   std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> mode_family(const Value& value) const;
   std::optional<Value> formulation(const Value& value) const;
@@ -151,8 +173,8 @@ class Checker {
   const SceneNames* names_ = nullptr;
   mutable SceneSources* sources_ = nullptr;
   SceneParts* parts_ = nullptr;
-  mutable int suggested_ = 0;             ///< among many candidates
-  mutable Moves moves_ = Moves::turning;  ///< what the map at hand is about
+  mutable int suggested_ = 0;  ///< among many candidates
+  mutable Subject subject_;    ///< of the map at hand
 };
 
 }  // namespace withy

@@ -125,10 +125,10 @@ std::optional<Value> Checker::named(const Value& value, const ParameterSpec& spe
     } else if (!refers(document_.key_place(path), name, spec.refers)) {
       good = false;
     }
-    const bool of_hinge = spec.refers == ParameterSpec::Refers::hinge;
-    const Moves outside = std::exchange(moves_, of_hinge ? moves(name, member) : moves_);
+    const Subject outside = subject_;
+    if (spec.refers == ParameterSpec::Refers::hinge) subject_ = {moves(name, member), moves(name, member), {}};
     auto checked = check_members(member, spec.members);
-    moves_ = outside;
+    subject_ = outside;
     if (checked) {
       result.members().emplace_back(name, std::move(*checked));
     } else {

@@ -42,7 +42,8 @@ bool identical(const Value& a, const Value& b) {
 bool equal(const SceneNames& a, const SceneNames& b) {
   const auto same = [](const NameList& m, const NameList& n) { return m.names() == n.names(); };
   return same(a.bodies, b.bodies) && same(a.hinges, b.hinges) && same(a.frames, b.frames) && same(a.loads, b.loads) &&
-         same(a.sliding, b.sliding) && same(a.signals, b.signals) && a.frames_complete == b.frames_complete;
+         same(a.sliding, b.sliding) && a.units == b.units && same(a.signals, b.signals) &&
+         a.frames_complete == b.frames_complete;
 }
 
 }  // namespace

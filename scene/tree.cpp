@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "withy/core/model/hinge_rates.hpp"
@@ -75,13 +76,20 @@ class TreeBuilder {
     }
   }
 
-  void take_reflected_inertia(const Value& value, HingeNode& node) {
+  void take_reflected_inertia(const Value& given, const Value& value, HingeNode& node) {
     const Value* reflected = value.find("reflected_inertia");
     if (reflected == nullptr || node.hinge == nullptr) return;
     node.reflected_inertia = reflected->number();
-    if (node.hinge->speeds() != 1 || node.hinge->coordinates() != 1)
+    if (node.hinge->speeds() != 1 || node.hinge->coordinates() != 1) {
       problems_.error(*reflected, fmt::format("only hinges of one rate have a reflected inertia, and this one has {}",
                                               node.hinge->speeds()));
+      return;
+    }
+    const std::vector<ParameterSpec>& members = grammar::hinge_members();
+    const auto spec = std::find_if(members.begin(), members.end(),
+                                   [](const ParameterSpec& s) { return s.key == "reflected_inertia"; });
+    if (!checker_.has_unit(given.at("reflected_inertia"), *spec, !hinge_rates(*node.hinge)[0].angular))
+      problems_.good = false;
   }
 
   void add_hinge(const std::string& name, const Value& given) {
@@ -90,7 +98,9 @@ class TreeBuilder {
     Link& link = links_.emplace_back();
     link.name = name;
     Made<Hinge> made;
-    const auto value = check_plugin_map(given, "type", grammar::hinge_members(), checker_, made);
+    // Whether it turns or slides is known when it is made.
+    const Value* value =
+        checker_.of_either([&] { return check_plugin_map(given, "type", grammar::hinge_members(), checker_, made); });
     HingeNode node;
     node.name = name;
     // The ends are looked up whatever else is wrong.
@@ -123,7 +133,7 @@ class TreeBuilder {
         if (link.child >= 0) bodies_.hold(link.child, found.node);
       }
     }
-    if (!value) {
+    if (value == nullptr) {
       problems_.good = false;
       return;
     }
@@ -141,7 +151,7 @@ class TreeBuilder {
       for (std::size_t i = 0; i < rates.size(); ++i)
         if (!rates[i].angular) tree_.names.sliding.add(fmt::format("{}.{}", name, i));
     }
-    take_reflected_inertia(*value, node);
+    take_reflected_inertia(given, *value, node);
     hinge_nodes_.push_back(std::move(node));
     hinge_values_.emplace_back(name, std::move(made.value));
   }

@@ -99,18 +99,19 @@ struct Measured {
   const Model& model;
   const SignalUnits& units;
 
+  /// Of the first signal or input that a part names; empty where it names none.
+  [[nodiscard]] std::string unit_at(const Value& part, const char* key) const {
+    const Value* names = part.find(key);
+    if (names == nullptr || names->kind() != Value::Kind::list || names->items().empty()) return {};
+    const auto found = units.find(names->items().front().text());
+    return found == units.end() ? "1" : found->second;
+  }
   /// A controller's parameters, by the hinge or input that it drives and the signal that it measures.
   [[nodiscard]] Specs of_controller(const Value& part, Specs specs, bool slides_along) const {
-    const auto unit_at = [&](const char* key) -> std::string {
-      const Value* names = part.find(key);
-      if (names == nullptr || names->kind() != Value::Kind::list || names->items().empty()) return {};
-      const auto found = units.find(names->items().front().text());
-      return found == units.end() ? "1" : found->second;
-    };
-    const std::string signal = unit_at("of");
+    const std::string signal = unit_at(part, "of");
     if (signal.empty()) return at_hinge(std::move(specs), slides_along);
     specs = at_hinge(std::move(specs), false);
-    if (slides_along || unit_at("to") == "N")
+    if (slides_along || unit_at(part, "to") == "N")
       for (ParameterSpec& spec : specs) spec.unit = replaced(spec.unit, "N m", "N");
     return signal == "rad" ? specs : of_signal(std::move(specs), signal);
   }
@@ -119,6 +120,7 @@ struct Measured {
     const bool along_hinge =
         hinge != nullptr && hinge->kind() == Value::Kind::text && slides(model, hinge->text(), component_of(part));
     if (type == "pid") return of_controller(part, std::move(specs), along_hinge);
+    if (type == "actuator") return at_hinge(std::move(specs), along_hinge || unit_at(part, "to") == "N");
     return at_hinge(std::move(specs), along_hinge);
   }
 };
@@ -139,6 +141,7 @@ void add_parts(Collector& out, const Value& source, const char* key, const Specs
     const Plugin<Interface>* plugin =
         type != nullptr && type->kind() == Value::Kind::text ? registry.find<Interface>(type->text()) : nullptr;
     if (plugin != nullptr) specs.insert(specs.end(), plugin->parameters.begin(), plugin->parameters.end());
+    if constexpr (std::is_same_v<Interface, Hinge>) specs = at_hinge(std::move(specs), slides(measured.model, name, 0));
     out.members(std::string(".") + key + '.' + name, part,
                 plugin != nullptr && acts_on_hinges<Interface> ? measured(part, plugin->id, specs) : specs);
   }

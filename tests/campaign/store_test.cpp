@@ -1,16 +1,21 @@
 // Stores: what is damaged is made again and nothing else, and nothing of another plan is mixed in.
 #include "withy/campaign/store.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <array>
+#include <barrier>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
+#include <thread>
+#include <vector>
 
 #include "withy/results/results_error.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/tests/campaign/store_fixture.hpp"
 
 namespace withy::campaign {
@@ -123,6 +128,49 @@ TEST(Sweeps, AStoreOfAnotherPlanIsNotMixedWith) {
   EXPECT_THROW(Store(folder / "store", another, false), ResultsError);
   Store(folder / "store", another, true);
   EXPECT_EQ(run(folder, another, "store", {1, 1, 1, {}}).ran, 12U);
+}
+
+/// Without --force nothing is replaced that no store has left, and with it nothing that the plan is read from.
+TEST(Sweeps, AFolderOfOtherFilesIsNotMadeAStore) {
+  const PlanFolder folder;
+  const std::string list = "vary: {bodies.rod.mass: {list: out/table.csv}}\n";
+  folder.write("out/table.csv", "mass\n1\n2\n");
+  for (const bool anew : {false, true})
+    EXPECT_THROW(Store(folder / "out", folder.plan(list), anew), study::InputError) << "the plan reads its table.csv";
+  EXPECT_EQ(folder.read("out/table.csv"), "mass\n1\n2\n");
+  const Plan plan = folder.plan(twelve);
+  for (const char* name : {"a/table.csv", "b/report.html", "c/segments/notes.txt", "d/store.json", "e/histories.svg"}) {
+    folder.write(name, "mine");
+    const std::filesystem::path store = folder / std::string(name, 1);
+    EXPECT_THROW(Store(store, plan, false), ResultsError) << name;
+    EXPECT_EQ(folder.read(name), "mine");
+    EXPECT_FALSE(std::filesystem::exists(store / "store.lock"));
+    EXPECT_NO_THROW(Store(store, plan, true)) << name;
+  }
+  EXPECT_EQ(folder.read("c/segments/notes.txt"), "mine") << "no name of a store";
+  folder.write("f/notes.txt", "mine");
+  EXPECT_EQ(run(folder, plan, "f", {1, 1, 1, {}}).ran, 12U);
+  EXPECT_EQ(folder.read("f/notes.txt"), "mine");
+}
+
+/// However they come to begin at once, each finds the store that one has made, with its segments.
+TEST(Sweeps, ShardsMayBeginAStoreTogether) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  constexpr std::uint64_t shards = 8;
+  for (int round = 0; round < 20; ++round) {
+    const std::filesystem::path path = folder / fmt::format("store{}", round);
+    std::barrier together(shards);
+    std::vector<std::thread> threads;
+    for (std::uint64_t shard = 1; shard <= shards; ++shard)
+      threads.emplace_back([&, shard] {
+        together.arrive_and_wait();
+        const Store store(path, plan, false);
+        SegmentWriter(store.segment(shard, shards, 0), plan.fingerprint).append(made(shard - 1));
+      });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(StoreIndex(path, read_description(path)).done(), shards) << round;
+  }
 }
 
 // Neighbours in different segments, more than are open at once, one case of them twice.

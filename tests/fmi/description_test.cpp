@@ -50,7 +50,7 @@ TEST(Description, NamesReferencesUnitsAndStructureFollowTheRulesOfBothVersions) 
       std::set<std::string> names, units;
       for (const auto& [tag, unit] : fmu.xml.get_child("UnitDefinitions")) units.insert(attributes_of(unit).at("name"));
       std::set<std::size_t> outputs, derivatives, initial;
-      int loads = 0;
+      int loads = 0, rates = 0;
       const std::size_t first = version == 2 ? 1 : 0;  // FMI 2.0 counts variables in the structure from 1
       for (std::size_t i = 0; i < fmu.variables.size(); ++i) {
         const Described& v = fmu.variables[i];
@@ -61,6 +61,11 @@ TEST(Description, NamesReferencesUnitsAndStructureFollowTheRulesOfBothVersions) 
           return v.attributes.contains(key) ? v.attributes.at(key) : std::string();
         };
         EXPECT_TRUE(!v.attributes.contains("unit") || units.contains(at("unit"))) << v.name;
+        // Modal coordinates are numbers, their rates numbers a second.
+        if (v.name.ends_with("].rate") || (v.name.starts_with("der(") && v.name.ends_with("])"))) {
+          EXPECT_EQ(at("unit"), "1/s") << v.name;
+          ++rates;
+        }
         // Where states of loads begin follows from the rest of the start: theirs is a first guess.
         const bool load = at("initial") == "approx";
         loads += load ? 1 : 0;
@@ -72,6 +77,7 @@ TEST(Description, NamesReferencesUnitsAndStructureFollowTheRulesOfBothVersions) 
             (at("initial") == "calculated" && (at("causality") == "output" || v.attributes.contains("derivative"))))
           initial.insert(i + first);
       }
+      EXPECT_TRUE(rates > 0 || file == busy_arm_file()) << file;
       EXPECT_EQ(loads, file.ends_with("manipulator-pid.yaml") ? 7 : 0);  // three controllers, an actuator of two states
       const Tree& structure = fmu.xml.get_child("ModelStructure");
       if (version == 2) {
@@ -160,8 +166,8 @@ time: {end: 1, output: 0.1}
 bodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}, b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]},
   c: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
 hinges:
-  turn: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
-  wrist: {type: prismatic, axis: [1, 0, 0], parent: a, child: b}
+  turn: {type: revolute, axis: [0, 0, 1], parent: world, child: a, reflected_inertia: 0.2}
+  wrist: {type: prismatic, axis: [1, 0, 0], parent: a, child: b, reflected_inertia: 2}
   driven: {type: prismatic, axis: [1, 0, 0], parent: b, child: c}
 motions: {swing: {type: sine, hinge: driven, amplitude: 0.1, period: 1, phase: 0.2}}
 loads:
@@ -174,6 +180,7 @@ loads:
   hold: {type: pid, hinge: wrist, proportional: 3}
   far: {type: pid, of: wrist, to: push, proportional: 3, integral: 1}
   fast: {type: pid, of: turn.rate, hinge: turn, proportional: 3, limit: 2}
+  lag: {type: actuator, of: far, to: push, frequency: 30, limit: 2}
 )";
   const Unpacked& fmu = exported(file.string(), 3);
   const auto unit = [&](const std::string& path) {
@@ -197,7 +204,11 @@ loads:
                                           {"loads.far.proportional", "N/m"},
                                           {"loads.far.integral", "N/(m s)"},
                                           {"loads.fast.proportional", ""},
-                                          {"loads.fast.limit", "N m"}})
+                                          {"loads.fast.limit", "N m"},
+                                          {"loads.lag.limit", "N"},
+                                          {"loads.lag.frequency", "rad/s"},
+                                          {"hinges.turn.reflected_inertia", "kg m^2"},
+                                          {"hinges.wrist.reflected_inertia", "kg"}})
     EXPECT_EQ(unit(path), expected) << path;
   std::map<std::string, std::map<std::string, std::string>> units;
   for (const auto& [tag, element] : fmu.xml.get_child("UnitDefinitions"))
