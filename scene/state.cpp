@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -39,8 +40,9 @@ bool has_quaternion(const Hinge& hinge) {
 
 class StateReader {
  public:
-  StateReader(const Model& model, const Checker& checker, State& state)
-      : model_(model), checker_(checker), state_(state) {}
+  /// \param loads_begin whether the continuous states of loads begin at what the state says, but for those it names
+  StateReader(const Model& model, const Checker& checker, State& state, bool loads_begin = false)
+      : model_(model), checker_(checker), state_(state), loads_begin_(loads_begin) {}
 
   bool read(const Value& value) {
     if (!map_with(value,
@@ -50,11 +52,12 @@ class StateReader {
     model_.prescribe(state_);  // what the state does not say of driven hinges, their motions do
     if (const Value* hinges = value.find("hinges")) read_hinges(*hinges);
     if (const Value* bodies = value.find("bodies")) read_bodies(*bodies);
-    if (const Value* loads = value.find("loads")) read_loads(*loads);
     if (const Value* held = value.find("held")) good_ = read_held(*held, model_, checker_, state_) && good_;
     if (const Value* inputs = value.find("inputs")) read_inputs(*inputs);
     scalar(value, number("work", "J", ""), state_.y.back());
     good_ = read_events_done(value, model_, checker_, state_) && good_;
+    if (loads_begin_ && good_) model_.begin_continuous(state_);
+    if (const Value* loads = value.find("loads")) read_loads(*loads);
     return good_;
   }
 
@@ -249,6 +252,7 @@ class StateReader {
   const Model& model_;
   const Checker& checker_;
   State& state_;
+  bool loads_begin_;
   bool good_ = true;
 };
 
@@ -279,7 +283,14 @@ State parse_state(std::string_view text, const std::string& file, const Model& m
     // A run.json says with which state its run ended.
     const Value& root = document.root;
     const Value* final = root.kind() == Value::Kind::map && root.has("status") ? root.find("final") : nullptr;
-    set_state(final != nullptr ? *final : root, model, Checker(document, none, diagnostics), state);
+    const Value& given = final != nullptr ? *final : root;
+    // Those of the start began where that is: elsewhere they begin there.
+    const bool elsewhere = given.kind() == Value::Kind::map &&
+                           std::any_of(given.members().begin(), given.members().end(), [](const Value::Member& m) {
+                             return m.first != "loads" && m.first != "work" && m.first != "events";
+                           });
+    StateReader(model, Checker(document, none, diagnostics), state, elsewhere && model.layout().continuous > 0)
+        .read(given);
   }
   if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
   return state;

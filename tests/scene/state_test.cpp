@@ -54,6 +54,25 @@ TEST_F(States, ComeBackFromJsonWithTheSameBits) {
   }
 }
 
+/// The filter of the derivative begins at the error of the state that is told, 1 − 0.2, and not at the scene's own.
+TEST_F(States, LoadsBeginWhereTheStateIs) {
+  const Scene held = parse_scene(R"(format: withy/1
+time: {end: 1}
+bodies: {disc: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {p: {type: revolute, axis: [0, 0, 1], parent: world, child: disc}}
+loads: {hold: {type: pid, hinge: p, proportional: 4, derivative: 3, filter: 0.1, reference: 1}}
+)",
+                                 "s.yaml", registry);
+  const auto filter = [&](const std::string& text) {
+    const std::size_t first = held.model->layout().continuous_slots[0].first;
+    return parse_state(text, "state.json", *held.model, held.initial).y[first];
+  };
+  EXPECT_DOUBLE_EQ(filter("{}"), 1);
+  EXPECT_DOUBLE_EQ(filter("hinges: {p: {position: 0.2, rate: 0.3}}"), 0.8);
+  EXPECT_DOUBLE_EQ(filter("{hinges: {p: {position: 0.2}}, loads: {hold: {filter: 0.5}}}"), 0.5);
+  EXPECT_DOUBLE_EQ(filter("loads: {hold: {filter: 0.5}}"), 0.5);
+}
+
 TEST_F(States, OfARunAreTheOnesThatItEndedWith) {
   const std::string end = R"({"time": 2.5, "hinges": {"right_slide": {"position": [0.1], "rate": [0.7]}}})";
   const State alone = parse_state(end, "s", *scene.model, scene.initial);
