@@ -130,6 +130,7 @@ Value* SceneValues::target(const std::vector<std::string>& keys, int line, const
               fmt::format("got index {}; need 0 to {}", in_quotes(key), static_cast<long>(at->items().size()) - 1));
         return nullptr;
       }
+      at->set_place({line, 0, path});  // what is wrong with the whole of it may be of what is put there
       at = &at->items()[*index];
       path += "/" + key;
       continue;
