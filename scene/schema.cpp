@@ -23,6 +23,12 @@ constexpr const char* output_pattern = "^(?!world$)[A-Za-z_][A-Za-z0-9_.@-]*$"; 
 
 Json reference(const char* definition) { return {{"$ref", std::string("#/$defs/") + definition}}; }
 
+/// A map that may be empty may be nothing, as Checker::is_map takes it.
+Json or_nothing(Json map) {
+  if (!map.contains("required") && !map.contains("minProperties")) map["type"] = {"object", "null"};
+  return map;
+}
+
 /// Makes the schema of everything one registry can read.
 class SchemaWriter {
  public:
@@ -35,18 +41,19 @@ class SchemaWriter {
     properties["bodies"] = plugins<Body>(grammar::body_members(), "bodies of the tree");
     properties["bodies"]["minProperties"] = 1;
     properties["hinges"] = plugins<Hinge>(grammar::hinge_members(), "hinges; each body is the child of exactly one");
-    properties["loads"] = plugins<Load>(grammar::load_members(), "loads on the tree");
-    properties["motions"] = plugins<Motion>(grammar::motion_members(), "prescribed motions of hinges");
-    properties["constraints"] = {
-        {"type", "object"},
-        {"description", "hinges that close loops beyond the tree"},
-        {"propertyNames", reference("name")},
-        {"additionalProperties", {{"anyOf", alternatives<Hinge>("hinge", grammar::constraint_members())}}}};
-    properties["initial"] = state();
+    properties["loads"] = or_nothing(plugins<Load>(grammar::load_members(), "loads on the tree"));
+    properties["motions"] = or_nothing(plugins<Motion>(grammar::motion_members(), "prescribed motions of hinges"));
+    properties["constraints"] = or_nothing(
+        {{"type", "object"},
+         {"description", "hinges that close loops beyond the tree"},
+         {"propertyNames", reference("name")},
+         {"additionalProperties", {{"anyOf", alternatives<Hinge>("hinge", grammar::constraint_members())}}}});
+    properties["initial"] = or_nothing(state());
     Json guess = state();
     guess["description"] = "where closing the loops of constraints begins, for coordinates that the state does not say";
     properties["initial"]["properties"]["guess"] = std::move(guess);
-    properties["outputs"] = plugins<Sensor>(grammar::sensor_members(), "sensors, whose numbers are results");
+    properties["outputs"] =
+        or_nothing(plugins<Sensor>(grammar::sensor_members(), "sensors, whose numbers are results"));
     properties["outputs"]["propertyNames"] = {{"type", "string"}, {"pattern", output_pattern}};
     return {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},
@@ -120,10 +127,11 @@ class SchemaWriter {
       case table:
         return rows(spec);
       case map:
-        return members(spec.members);
+        return or_nothing(members(spec.members));
       case named:
-        return {
-            {"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", members(spec.members)}};
+        return or_nothing({{"type", "object"},
+                           {"propertyNames", reference("name")},
+                           {"additionalProperties", or_nothing(members(spec.members))}});
       case matrix: {
         Json line = row(quantity(), 0);
         line["minItems"] = 1;

@@ -84,6 +84,7 @@ class Validator {
   }
 
   static bool is(const Json& value, const std::string& type) {
+    if (type == "null") return value.is_null();
     if (type == "object") return value.is_object();
     if (type == "array") return value.is_array();
     if (type == "string") return value.is_string();
@@ -138,6 +139,21 @@ class Schema : public SceneTest {
   Json json;
   Validator validator;
 };
+
+/// `loads:` with nothing behind it is a scene without loads; a body is not nothing.
+TEST_F(Schema, TakesNothingForMapsThatMayBeEmptyAsScenesDo) {
+  const std::string scene = good_scene;
+  const std::string moved = replaced(scene, "child: hub}", "child: hub, offset: null}");
+  for (const std::string& text :
+       {scene + "outputs:\n", scene + "initial: ~\nmotions: null\n", scene.substr(0, scene.find("  motor:")), moved,
+        replaced(scene, "{position: [0.0762, 0, 0]}", "")}) {
+    EXPECT_EQ(problems(text, registry), "") << text;
+    EXPECT_EQ(fault(text), "") << text;
+  }
+  const std::string none = replaced(scene, "type: rigid", "type:");
+  EXPECT_NE(problems(none, registry), "");
+  EXPECT_NE(fault(none), "");
+}
 
 TEST_F(Schema, NamesItsDraftAndForbidsUnknownKeys) {
   EXPECT_EQ(json["$schema"], "https://json-schema.org/draft/2020-12/schema");
