@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "element_faces.hpp"
 
 namespace withy::fem {
 namespace {
+
+constexpr std::string_view head_of_surfaces =
+    "# vtk DataFile Version 3.0\nouter faces and shapes of modes, written by withy import\n";
 
 /// Numbers of nodes, in the order of an element's face.
 struct NodedFace {
@@ -128,11 +133,14 @@ OuterFaces outer_faces(const Mesh& mesh, const Matrices& matrices, FaceEdges edg
   return outer;
 }
 
+bool is_surface(const std::filesystem::path& file) {
+  std::string head(head_of_surfaces.size(), '\0');
+  std::ifstream in(file, std::ios::binary);
+  return in.read(head.data(), static_cast<std::streamsize>(head.size())) && head == head_of_surfaces;
+}
+
 std::string surface_text(const Reduction& body, const OuterFaces& outer, const Eigen::MatrixXd& second) {
-  std::string text = fmt::format(
-      "# vtk DataFile Version 3.0\nouter faces and shapes of modes, written by withy import\nASCII\nDATASET "
-      "POLYDATA\nPOINTS {} float\n",
-      outer.rows.size());
+  std::string text = fmt::format("{}ASCII\nDATASET POLYDATA\nPOINTS {} float\n", head_of_surfaces, outer.rows.size());
   append_vectors(body.X.reshaped(), outer, text);
   std::size_t numbers = outer.polygons.size();
   for (const auto& polygon : outer.polygons) numbers += polygon.size();

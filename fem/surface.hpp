@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -38,5 +39,8 @@ inline constexpr Eigen::Index most_second_order = 2'000'000;
 /// `mode_K_L`, k ≤ l, the second-order displacements Γ_kl.
 /// \param second 3N×n(n+1)/2 of the whole mesh, see second_order_displacements; without columns: not known
 std::string surface_text(const Reduction& body, const OuterFaces& outer, const Eigen::MatrixXd& second);
+
+/// Whether a file is there that begins as surface_text() does.
+bool is_surface(const std::filesystem::path& file);
 
 }  // namespace withy::fem

@@ -38,7 +38,7 @@ std::vector<Port> state_ports(const Model& model) {
     for (std::size_t i = 0; i < body.speeds; ++i) {
       const std::string& mode = layout.speed_names[body.speed + i];
       ports[body.position + i] = {mode, ""};
-      ports[layout.positions + body.speed + i] = {mode + ".rate", ""};
+      ports[layout.positions + body.speed + i] = {mode + ".rate", "1/s"};
     }
   }
   for (std::size_t i = 0; i < layout.continuous; ++i)

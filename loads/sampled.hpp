@@ -31,8 +31,8 @@ inline double sample_period(const Value& p) {
 /// Whether an instant of the clock of this period [s] falls on a time [s].
 inline bool at_sample(double t, double period) noexcept { return same_instant(std::round(t / period) * period, t); }
 
-/// A controller of hinges with a sample-and-hold. Its discrete states are what it told at the last sample, the efforts
-/// on the coordinates it follows, and whether it has begun.
+/// A controller of hinges with a sample-and-hold. Its discrete states are whether it has begun, what it told at the
+/// last sample, and the efforts on the coordinates it follows.
 class Sampled final : public BoundLoad, public DiscretePart, public DigitalPart, public LoadNumbers {
  public:
   Sampled(std::unique_ptr<TrackingLoad> controller, double period)
@@ -57,29 +57,29 @@ class Sampled final : public BoundLoad, public DiscretePart, public DigitalPart,
   std::vector<SensorColumn> numbers() const override { return controller_->numbers(); }
   /// The efforts that are held, errors and margins of the last sample.
   void show(const LoadView& view, std::span<double> values) const noexcept override {
-    const std::span<const double> efforts = view.discrete.subspan(told_, axes_);
+    const std::span<const double> efforts = view.discrete.last(axes_), told = view.discrete.subspan(1, told_);
     std::copy(efforts.begin(), efforts.end(), values.begin());
-    std::copy_n(view.discrete.begin(), told_, values.begin() + static_cast<std::ptrdiff_t>(axes_));
+    std::copy(told.begin(), told.end(), values.begin() + static_cast<std::ptrdiff_t>(axes_));
     controller_->finish(values.subspan(axes_));
   }
 
-  std::size_t states() const override { return told_ + axes_ + 1; }
+  std::size_t states() const override { return 1 + told_ + axes_; }
   double period() const override { return period_; }
   void renew(double t, std::span<const double> positions, std::span<const double> speeds, const Crossing& crossing,
              std::span<double> discrete, std::span<double> scratch) const noexcept override {
     if (crossing.begins && !at_sample(t, period_)) return pass_idle(discrete);  // it waits for its clock
-    controller_->commands(t, positions, speeds, discrete.subspan(told_, axes_), scratch);
-    controller_->tell(t, positions, speeds, discrete.first(told_));
-    discrete.back() = 1;
+    discrete[0] = 1;
+    controller_->tell(t, positions, speeds, discrete.subspan(1, told_));
+    controller_->commands(t, positions, speeds, discrete.last(axes_), scratch);
   }
   void pass_idle(std::span<double> discrete) const noexcept override {
     std::fill(discrete.begin(), discrete.end(), 0.0);
   }
-  bool waits(std::span<const double> discrete) const override { return discrete.back() == 0; }
+  bool waits(std::span<const double> discrete) const override { return discrete[0] == 0; }
   bool gives_steps() const override { return false; }
-  std::size_t told() const override { return told_; }
+  std::size_t told() const override { return 1 + told_; }
   void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
-    for (std::size_t i = 0; i < axes_; ++i) efforts[controller_->axes()[i].speed] += discrete[told_ + i];
+    for (std::size_t i = 0; i < axes_; ++i) efforts[controller_->axes()[i].speed] += discrete[1 + told_ + i];
   }
 
  private:

@@ -14,6 +14,8 @@ struct OptionDescription {
   std::string value;                 ///< "FILE", "N,N,…": what the help writes for a value
   std::vector<std::string> choices;  ///< the words that the value may be; empty where it is free
   bool takes_value = false;
+  bool required = false;
+  bool several = false;  ///< values may follow one another
 };
 
 struct CommandDescription {

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <sstream>
 
@@ -9,6 +10,21 @@
 
 namespace withy::program {
 namespace {
+
+/// Help as the parser has it, but for what may be given by its place or by a name: that one of the two is needed stands
+/// in the list of arguments alone.
+class Help final : public CLI::Formatter {
+ public:
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    if (is_positional || !option->get_positional()) return Formatter::make_option(option, is_positional);
+    std::string head = make_option_name(option, false) + make_option_opts(option);
+    const std::string needed = " " + get_label("REQUIRED");
+    if (const std::size_t at = head.find(needed); at != std::string::npos) head.erase(at, needed.size());
+    std::ostringstream out;
+    CLI::detail::format_help(out, head, make_option_desc(option), column_width_);
+    return out.str();
+  }
+};
 
 /// Adds a command with its options; what it returns is called once they are read.
 Call add(CLI::App& parser, const Command& command) {
@@ -110,6 +126,8 @@ OptionDescription description_of(const CLI::Option& option) {
   for (const std::string& name : option.get_lnames()) d.names.push_back("--" + name);
   for (const std::string& name : option.get_snames()) d.names.push_back("-" + name);
   if (option.get_positional()) d.argument = option.get_name(true);
+  d.required = option.get_required();
+  d.several = option.get_expected_max() > 1;
   d.meaning = option.get_description();
   d.takes_value = option.get_items_expected_max() > 0;
   const std::string type = option.get_type_name();  // "WHEN:{auto,always,never}"
@@ -137,6 +155,7 @@ CommandDescription description_of(const CLI::App& parser) {
 std::variant<Call, ExitStatus> read_command_line(const Program& program, int argc, const char* const* argv) {
   CLI::App parser(program.meaning, program.name);
   parser.set_version_flag("--version", std::string(program.name) + ' ' + program.version);
+  parser.formatter(std::make_shared<Help>());  // of all commands
   parser.footer(std::string("Examples:\n") + program.examples);
   const std::string name = argc > 1 ? argv[1] : "";
   if (name.empty() || name.front() == '-') return without_command(parser, program, argc, argv);

@@ -44,11 +44,17 @@ std::string examples_text(const CommandDescription& command) {
   return text.empty() ? "" : ".PP\nExamples:\n.PP\n.nf\n.RS\n" + text + ".RE\n.fi\n";
 }
 
+/// "RUN...", "[FILE]".
+std::string argument_text(const OptionDescription& option) {
+  const std::string name = "\\fI" + roff(option.argument) + "\\fR" + (option.several ? "..." : "");
+  return option.required ? name : '[' + name + ']';
+}
+
 /// \param before the words before the command's name, and whether it stands in the program's own list
 std::string command_text(const std::string& before, bool first, const CommandDescription& command) {
   std::string name = before + ' ' + command.name, text, arguments;
   for (const OptionDescription& o : command.options)
-    if (!o.argument.empty()) arguments += " \\fI" + roff(o.argument) + "\\fR";
+    if (!o.argument.empty()) arguments += ' ' + argument_text(o);
   if (command.parts.empty() || first)
     text = fmt::format(".SS \"{}\"\n\\fB{}\\fR{}{}\n.PP\n{}.\n", roff(name), roff(name),
                        command.parts.empty() ? "" : " \\fICOMMAND\\fR", arguments + " [\\fIoptions\\fR]",

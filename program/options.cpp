@@ -1,8 +1,10 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "withy/program/command.hpp"
 #include "withy/scene/names.hpp"
@@ -19,15 +21,23 @@ template <class T>
 struct Plain<std::optional<T>> {
   using Type = T;
 };
+/// Each number of a list is read by itself.
+template <class T>
+requires std::is_arithmetic_v<T>
+struct Plain<std::vector<T>> {
+  using Type = T;
+};
 
 /// What is wrong with a text that is to be a value of a type; the parser's own words are the text alone, it takes -1
-/// for the greatest number without a sign, and an empty text for an option that is not there.
+/// for the greatest number without a sign, "nan" and "inf" for numbers, and an empty text for an option that is not
+/// there.
 template <class T>
 std::string problem_of(const std::string& text) {
   if constexpr (std::is_arithmetic_v<T>) {
     T read{};
-    const bool good = CLI::detail::lexical_cast(text, read) && !(std::is_unsigned_v<T> && text.starts_with('-'));
-    const char* needed = std::is_floating_point_v<T> ? "number"
+    bool good = CLI::detail::lexical_cast(text, read) && !(std::is_unsigned_v<T> && text.starts_with('-'));
+    if constexpr (std::is_floating_point_v<T>) good = good && std::isfinite(read);
+    const char* needed = std::is_floating_point_v<T> ? "finite number"
                          : std::is_unsigned_v<T>     ? "whole number from 0"
                                                      : "whole number";
     if (!good) return "got " + in_quotes(text) + "; need a " + needed;

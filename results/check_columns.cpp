@@ -18,7 +18,10 @@ void check_columns(const study::Prepared& prepared, const std::vector<std::strin
   std::vector<std::string> unknown;
   for (const std::string& name : names) {
     const auto is = [&](const Column& c) { return c.name == name || c.name.starts_with(name + '.'); };
-    if (std::none_of(table.columns().begin(), table.columns().end(), is)) unknown.push_back(name);
+    if (std::any_of(table.columns().begin(), table.columns().end(), is)) continue;
+    if (const std::string problem = problem_of_place(prepared.values.root(), name); !problem.empty())
+      throw study::OptionError("output", problem);
+    unknown.push_back(name);
   }
   if (!unknown.empty()) throw study::OptionError("output", unknown_names(unknown, known));
 }

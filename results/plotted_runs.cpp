@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "withy/results/csv_recorder.hpp"
 #include "withy/results/hdf5_recorder.hpp"
 #include "withy/results/output_name.hpp"
+#include "withy/results/picture_file.hpp"
 #include "withy/results/table_picture.hpp"
+#include "withy/scene/document.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy {
@@ -19,6 +22,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_rows = 2000;
 
 constexpr const char* table_of_runs = "results.csv";
+
+/// The last line of a picture.
+constexpr const char* mark_of_plots = "<!-- drawn by withy plot -->\n";
 
 /// The table of a run's folder.
 fs::path table_in(const std::string& folder) {
@@ -41,6 +47,14 @@ std::string last_parts(const std::vector<std::string>& parts, std::size_t count)
   for (std::size_t i = parts.size() - std::min(count, parts.size()); i < parts.size(); ++i)
     text += (text.empty() || text.ends_with('/') ? "" : "/") + parts[i];
   return text;
+}
+
+void check_places(const std::vector<double>& over, const std::vector<std::string>& columns) {
+  if (!over.empty() && over.size() != columns.size())
+    throw study::InputError(
+        fmt::format("--over has {} places for {} columns; need one each", over.size(), columns.size()));
+  for (const double place : over)
+    if (!std::isfinite(place)) throw study::InputError(fmt::format("--over: got {}; need finite places", place));
 }
 
 /// Runs that have a number in one of the panels, each of which has so many curves a run.
@@ -73,13 +87,16 @@ PlottedRuns::PlottedRuns(const std::vector<std::string>& given) {
   }
 }
 
-fs::path PlottedRuns::picture(const std::string& given) const {
-  const fs::path out = given.empty() ? files_.front().parent_path() / "plot.svg" : fs::path(given);
-  keep_inputs(out, files_);
-  return out;
+fs::path PlottedRuns::picture(const std::string& given, bool force) const {
+  const fs::path otherwise = files_.front().parent_path() / "plot.svg";
+  const bool own = given.empty() && fs::is_regular_file(otherwise) && read_bytes(otherwise).ends_with(mark_of_plots);
+  return output_name(given, otherwise, force || own, files_);
 }
 
+void draw_plot(const Picture& picture, const fs::path& file) { write_picture(file, svg_plot(picture) + mark_of_plots); }
+
 DrawnRuns PlottedRuns::drawn(const std::vector<double>& over) const {
+  check_places(over, names_);
   const std::vector<std::string> names = run_names(files_);
   std::vector<NamedTable> runs;
   for (std::size_t i = 0; i < tables_.size(); ++i) runs.push_back({names[i], tables_[i].get()});

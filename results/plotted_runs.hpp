@@ -22,17 +22,22 @@ struct DrawnRuns {
   [[nodiscard]] std::string remarks() const;  ///< lines that say what is not drawn
 };
 
+/// Draws a picture into a file, as write_picture, with a mark by which PlottedRuns::picture knows it again.
+void draw_plot(const Picture& picture, const std::filesystem::path& file);
+
 class PlottedRuns {
  public:
   /// Reads the tables. \param given folders of runs and tables, and all else is a name of columns
   /// \throws study::InputError where no run is among them; ResultsError, std::system_error
   explicit PlottedRuns(const std::vector<std::string>& given);
-  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  ///< of columns; may be empty
   /// The file to draw into: as it was given, or where that is empty plot.svg in the first folder.
-  /// \throws study::InputError where it is one of the tables
-  [[nodiscard]] std::filesystem::path picture(const std::string& given) const;
+  /// \param force plot.svg may be a file that draw_plot() has not made
+  /// \throws study::InputError where it is one of the tables, or such a file and `force` is false; std::system_error
+  /// where plot.svg cannot be read
+  [[nodiscard]] std::filesystem::path picture(const std::string& given, bool force) const;
   /// A panel a column over time; or one of all columns over these places [m], as envelope_panel.
-  /// \throws ResultsError where no run has such a column
+  /// \throws ResultsError where no run has such a column; study::InputError where there are places, and not a finite
+  /// one for each of the names
   [[nodiscard]] DrawnRuns drawn(const std::vector<double>& over) const;
 
  private:

@@ -15,12 +15,21 @@
 namespace withy {
 namespace {
 
-/// The folder of one value in that of the results.
-std::string below(const std::string& path, const std::string& value) {
-  if (path.empty()) return {};
-  std::string name = study::label_of(path) + '=' + value;
-  std::replace(name.begin(), name.end(), '/', '_');
-  return name;
+/// The folders of the values in that of the results, no two of one name: "x/a" and "x_a" would be one.
+std::vector<std::string> folders_of(const study::Variation& over) {
+  if (over.path.empty()) return {""};
+  std::vector<std::string> names;
+  const auto taken = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const std::string& value : over.values) {
+    std::string plain = study::label_of(over.path) + '=' + value;
+    std::replace(plain.begin(), plain.end(), '/', '_');
+    std::string name = plain;
+    for (std::size_t i = 2; taken(name); ++i) name = fmt::format("{}_{}", plain, i);
+    names.push_back(std::move(name));
+  }
+  return names;
 }
 
 /// \param reports parts of a page, one a run
@@ -40,8 +49,7 @@ void write_pictures(const std::filesystem::path& folder, const ComparisonAt& gro
 
 std::vector<std::string> comparison_content(const ComparisonQuestion& question) {
   std::vector<std::string> names = {"compare.json"};
-  for (const std::string& value : question.over.values) {
-    const std::filesystem::path folder = below(question.over.path, value);
+  for (const std::filesystem::path folder : folders_of(question.over)) {
     for (const char* name : {"compare.svg", "motion.svg", report_name}) names.push_back((folder / name).string());
     std::vector<std::string> formulations = question.formulations;
     formulations.push_back(question.reference);
@@ -53,7 +61,7 @@ std::vector<std::string> comparison_content(const ComparisonQuestion& question) 
 
 std::string comparison_places(const std::filesystem::path& folder, const study::Variation& over) {
   const char* page = has_report_page() ? report_name : "compare.svg";
-  const std::string first = (folder / below(over.path, over.values.front()) / page).string();
+  const std::string first = (folder / folders_of(over).front() / page).string();
   const std::size_t more = over.values.size() - 1;
   return fmt::format("\nresults in {}, to look at in {}{}\n", folder.string(), first,
                      more == 0 ? "" : fmt::format(" and those beside it, one a value of {}", over.path));
@@ -64,10 +72,12 @@ std::vector<ComparisonAt> record_comparison(const std::filesystem::path& folder,
                                             const std::function<Provenance(const Scene&)>& provenance,
                                             const std::function<study::Control(const std::string&)>& control) {
   std::vector<ComparisonAt> groups;
-  for (const std::string& value : question.over.values) {
+  const std::vector<std::string> folders = folders_of(question.over);
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    const std::string& value = question.over.values[i];
     SceneValues varied = values;
     if (!question.over.path.empty()) varied.set_text(question.over.path + '=' + value);
-    const std::filesystem::path own = folder / below(question.over.path, value);
+    const std::filesystem::path own = folder / folders[i];
     std::vector<std::string> reports;
     const auto simulator = [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
       const std::string& formulation = prepared.scene.formulation_name;

@@ -10,11 +10,25 @@
 
 namespace withy {
 
-nlohmann::ordered_json remarks_json(const Scene& scene, const std::vector<study::Remark>& remarks) {
+namespace {
+
+/// What set the value at a place that is not in the file, as "--set 'a=1'"; empty: it is, or nothing did.
+std::string origin_of(const Place& place, const std::vector<std::string>& origins) {
+  const auto index = static_cast<std::size_t>(-static_cast<long>(place.line)) - 1;
+  return place.line < 0 && index < origins.size() ? origins[index] : std::string();
+}
+
+}  // namespace
+
+nlohmann::ordered_json remarks_json(const Scene& scene, const std::vector<study::Remark>& remarks,
+                                    const std::vector<std::string>& origins) {
   nlohmann::ordered_json j{{"scene", scene.file}, {"valid", true}, {"remarks", nlohmann::ordered_json::array()}};
-  for (const study::Remark& r : remarks)
-    j["remarks"].push_back(
-        {{"line", r.place.line}, {"column", r.place.column}, {"path", r.place.path}, {"text", r.text}});
+  for (const study::Remark& r : remarks) {
+    nlohmann::ordered_json told{{"line", nullptr}, {"column", nullptr}, {"path", r.place.path}, {"text", r.text}};
+    if (r.place.line > 0) told["line"] = r.place.line, told["column"] = r.place.column;
+    if (const std::string origin = origin_of(r.place, origins); !origin.empty()) told["origin"] = origin;
+    j["remarks"].push_back(std::move(told));
+  }
   return j;
 }
 
@@ -90,7 +104,8 @@ struct Counted {
 
 }  // namespace
 
-std::string remarks_text(const Scene& scene, const std::vector<study::Remark>& remarks) {
+std::string remarks_text(const Scene& scene, const std::vector<study::Remark>& remarks,
+                         const std::vector<std::string>& origins) {
   std::string text;
   std::map<std::vector<std::string>, std::size_t> said;
   std::map<std::vector<std::string>, Counted> counted;
@@ -101,7 +116,8 @@ std::string remarks_text(const Scene& scene, const std::vector<study::Remark>& r
       continue;
     }
     const Place& p = remark.place;
-    const std::string at = p.line > 0 ? fmt::format("{}:{}:{}", scene.file, p.line, p.column) : scene.file;
+    std::string at = p.line > 0 ? fmt::format("{}:{}:{}", scene.file, p.line, p.column) : origin_of(p, origins);
+    if (at.empty()) at = scene.file;
     text += fmt::format("{}: {}: {}\n", at, p.path.empty() ? "/" : p.path, remark.text);
   }
   for (const auto& [words, more] : counted) text += fmt::format("and {} more: {}\n", more.times, more.text(words));

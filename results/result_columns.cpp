@@ -80,18 +80,18 @@ const ResultColumns::Names& ResultColumns::named() const {
     append(coordinate_columns(h));
     in(hinge_frame(h));
   }
-  const auto add_modes = [&](const char* suffix) {
+  const auto add_modes = [&](const char* suffix, const char* unit) {
     for (const Slot& body : layout.bodies)
       for (std::size_t i = 0; i < body.speeds; ++i)
-        names_.columns.push_back({layout.speed_names[body.speed + i] + suffix, ""});
+        names_.columns.push_back({layout.speed_names[body.speed + i] + suffix, unit});
   };
-  add_modes("");
+  add_modes("", "");
   in("");
   for (const HingeNode& h : model_.hinges()) {
     append(rate_columns(h));
     in(hinge_frame(h));
   }
-  add_modes(".rate");
+  add_modes(".rate", "1/s");
   in("");
   for (const Tip& tip : tips_) {
     if (!tip.flexible) continue;

@@ -11,11 +11,12 @@ namespace withy {
 /// How a curve is drawn. Pens are told apart by dashes too, for those who do not see colours.
 struct Pen {
   const char* colour;
-  const char* dashes;
+  std::string dashes;  ///< lengths drawn and left out, in turn; "none": solid
   double thickness;
 };
-/// The pen of a curve, or a run, counted from 0.
-const Pen& pen(std::size_t i);
+/// The pen of a curve, or a run, counted from 0. No two are alike; from the thirteenth on colours come again, with a
+/// dash and as many dots as tell them apart.
+Pen pen(std::size_t i);
 /// Attributes of a line drawn with it.
 std::string stroke(const Pen& p);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <tuple>
 
 namespace withy {
@@ -49,6 +50,18 @@ class Canvas {
   std::vector<char> owners_;
 };
 
+/// What the curves of a pen are drawn with where there are several.
+char letter(std::size_t pen) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+  return letters[pen % letters.size()];
+}
+
+/// "s" of "t [s]".
+std::string unit_of_label(const std::string& label) {
+  const std::size_t begin = label.rfind('[') + 1;  // 0 where there is none
+  return begin == 0 ? "" : ' ' + label.substr(begin, label.rfind(']') - begin);
+}
+
 void draw(Canvas& canvas, const Curve& curve, char owner, double x0, double x1, double y0, double y1) {
   const auto place = [](double v, double low, double high, int dots) {
     return high > low ? static_cast<int>(std::lround((v - low) / (high - low) * (dots - 1))) : dots / 2;
@@ -74,10 +87,12 @@ std::string panel_text(const Panel& panel) {
     }
   }
   const auto [y0, y1] = panel.y_range;
-  const bool several = panel.curves.size() > 1;
+  const auto pen_of = [&](std::size_t c) { return panel.curves[c].pen.value_or(c); };
+  bool several = false;
+  for (std::size_t c = 1; c < panel.curves.size(); ++c) several = several || pen_of(c) != pen_of(0);
   Canvas canvas(several);
   for (std::size_t c = 0; c < panel.curves.size(); ++c)
-    draw(canvas, panel.curves[c], static_cast<char>('a' + c % 26), x0, x1, y0, y1);
+    draw(canvas, panel.curves[c], letter(pen_of(c)), x0, x1, y0, y1);
   const std::vector<std::string> y_texts = mark_texts({y0, y1}, end_digits), x_texts = mark_texts({x0, x1}, end_digits);
   const std::size_t room = std::max({least_room, y_texts[0].size(), y_texts[1].size()});
   std::string out = panel.y_label + '\n';
@@ -86,7 +101,8 @@ std::string panel_text(const Panel& panel) {
     out += fmt::format("{:>{}} |{}\n", mark, room, canvas.line(r));
   }
   return out + fmt::format("{:>{}}+{:-<{}}\n{:>{}}{}{:>{}}\n", "", room + 1, "", panel_columns, "", room + 2,
-                           x_texts[0], x_texts[1] + " s", panel_columns - static_cast<int>(x_texts[0].size()));
+                           x_texts[0], x_texts[1] + unit_of_label(panel.x_label),
+                           panel_columns - static_cast<int>(x_texts[0].size()));
 }
 
 }  // namespace
@@ -94,7 +110,7 @@ std::string panel_text(const Panel& panel) {
 std::string terminal_plot(const std::vector<std::string>& legend, const std::vector<Panel>& panels) {
   std::string out;
   for (std::size_t i = 0; legend.size() > 1 && i < legend.size(); ++i)
-    out += fmt::format("{} {}\n", static_cast<char>('a' + i % 26), legend[i]);
+    out += fmt::format("{} {}\n", letter(i), legend[i]);
   for (const Panel& panel : panels) {
     if (!out.empty()) out += '\n';
     out += panel_text(panel);

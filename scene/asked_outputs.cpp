@@ -1,5 +1,7 @@
 #include "withy/scene/asked_outputs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -49,6 +51,9 @@ constexpr std::array quantities = {
     Quantity{"momentum", Of::all, "momentum", nullptr, nullptr, nullptr},
     Quantity{"power", Of::all, "power", nullptr, nullptr, nullptr},
 };
+
+/// Whether it is of a beam at a place, whose coordinate stands behind an @.
+bool at_a_place(const Quantity& q) { return q.of == Of::body && q.argument != nullptr; }
 
 std::vector<std::string> parts_of(std::string_view name) {
   std::vector<std::string> parts;
@@ -145,7 +150,7 @@ std::optional<AskedOutput> asked_output(const Value& scene, std::string_view nam
     if (at == name.size()) return asked;
     if (q->argument == nullptr) return {};
     std::string argument;
-    if (q->of == Of::body) {
+    if (at_a_place(*q)) {
       const auto [x, text] = coordinate_at(name.substr(at + 1));
       asked.definition.set(q->argument, Value(x));
       argument = text;
@@ -160,13 +165,30 @@ std::optional<AskedOutput> asked_output(const Value& scene, std::string_view nam
   return {};
 }
 
+std::string problem_of_place(const Value& scene, std::string_view name) {
+  const std::size_t at = name.find('@');
+  if (at == std::string_view::npos) return {};
+  const std::vector<std::string> parts = parts_of(name.substr(0, at));
+  const std::string object = dotted(std::span(parts).first(parts.size() - 1));
+  const Quantity* q = quantity_of(scene, parts.back(), object);
+  if (q == nullptr || !at_a_place(*q) || !scene_has(scene, q->of, object)) return {};
+  if (!coordinate_at(name.substr(at + 1)).second.empty()) return {};
+  return fmt::format("'{}' has no place behind the @: need a number, in m, without its unit, as {}.{}@0.3", name,
+                     object, q->word);
+}
+
 std::vector<std::string> asked_names(const Value& scene) {
   std::vector<std::string> names;
   const auto add = [&](const char* key, const std::vector<Of>& kinds) {
     const Value* part = scene.find(key);
-    for (const auto& [object, value] : part == nullptr ? std::vector<Value::Member>{} : part->members())
-      for (const Quantity& q : quantities)
-        if (std::find(kinds.begin(), kinds.end(), q.of) != kinds.end()) names.push_back(object + '.' + q.word);
+    for (const auto& [object, value] : part == nullptr ? std::vector<Value::Member>{} : part->members()) {
+      const Value* type = value.find("type");
+      const bool beam = type != nullptr && type->kind() == Value::Kind::text && type->text() == "beam";
+      for (const Quantity& q : quantities) {
+        if (std::find(kinds.begin(), kinds.end(), q.of) == kinds.end() || (at_a_place(q) && !beam)) continue;
+        names.push_back(object + '.' + q.word + (at_a_place(q) ? "@X" : ""));
+      }
+    }
   };
   add("hinges", {Of::hinge});
   add("constraints", {Of::constraint});

@@ -26,7 +26,11 @@ struct AskedOutput {
 /// \param scene its values as they were written; what it has under `outputs` does not matter
 std::optional<AskedOutput> asked_output(const Value& scene, std::string_view name);
 
-/// The names that a scene may be asked for, but those with an argument; for messages.
+/// What is wrong with a name of a quantity of a beam's section, behind whose @ no number stands; empty where it is not
+/// that.
+std::string problem_of_place(const Value& scene, std::string_view name);
+
+/// The names that a scene may be asked for, but those with an argument that may be left out; for messages.
 std::vector<std::string> asked_names(const Value& scene);
 
 /// Whether a definition is what its name says, and perhaps more.

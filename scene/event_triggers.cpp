@@ -115,8 +115,8 @@ std::shared_ptr<const BoundSensor> limit_of(const Model& model, const Value& eve
     std::shared_ptr<const BoundSensor> sensor = limit_sensor(model, i);
     if (sensor == nullptr)
       checker.key_error(event.place().path + "/limit",
-                        fmt::format("load '{}' tells of no limit; need a controller, an actuator or a wheel with one "
-                                    "that measures coordinates of hinges, or a hinge-limit",
+                        fmt::format("load '{}' tells of no limit; need a controller, an actuator or a wheel with one, "
+                                    "or a hinge-limit",
                                     name));
     return sensor;
   }

@@ -60,8 +60,8 @@ SceneEvents::SceneEvents(Value events, const Document& document, const Checker& 
     if (const Value* after = event.find("after")) followed_.insert(after->text());
 }
 
-bool SceneEvents::acts(const std::string& name, const Value& event) const {
-  return !event.at("do").members().empty() || !event.has("hinge") || event.number_at("delay") > 0 ||
+bool SceneEvents::acts(const std::string& name, const Value& event, const Watched& number) const {
+  return !event.at("do").members().empty() || number.element < 0 || event.number_at("delay") > 0 ||
          event.at("repeat").boolean() || followed_.contains(name);
 }
 
@@ -308,7 +308,7 @@ void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, s
   for (const auto& [name, given] : events_.members()) {
     const std::optional<Watched> number = watched(model, outputs, given, checker_);
     if (!number || !measures(name, *number)) continue;
-    if (!acts(name, given)) {
+    if (!acts(name, given, *number)) {
       const auto function = [index = static_cast<std::size_t>(number->element), value = given.number_at("value")](
                                 double, std::span<const double> y) { return y[index] - value; };
       plain.push_back({name, function, direction_of(given), given.at("stop").boolean()});

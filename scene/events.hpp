@@ -32,7 +32,7 @@ class SceneEvents {
   void add_to(Model& model, const std::vector<SensorNode>& outputs, std::vector<RunEvent>& plain);
 
  private:
-  [[nodiscard]] bool acts(const std::string& name, const Value& event) const;
+  [[nodiscard]] bool acts(const std::string& name, const Value& event, const Watched& number) const;
   [[nodiscard]] bool measures(const std::string& event, const Watched& number) const;
   void add_actions(const Model& model, const std::string& name, const Value& asked, ActingEvent& event) const;
   void refuse_in_loops(const Model& model, const Value& asked) const;

@@ -130,6 +130,7 @@ Value* SceneValues::target(const std::vector<std::string>& keys, int line, const
               fmt::format("got index {}; need 0 to {}", in_quotes(key), static_cast<long>(at->items().size()) - 1));
         return nullptr;
       }
+      at->set_place({line, 0, path});  // what is wrong with the whole of it may be of what is put there
       at = &at->items()[*index];
       path += "/" + key;
       continue;
@@ -190,8 +191,11 @@ void SceneValues::put(const std::vector<std::string>& keys, Document read, int l
       if (defines_output(document_.root, name.text())) continue;
       const std::optional<AskedOutput> asked = asked_output(document_.root, name.text());
       if (!asked) {
-        diagnostics_.error({line, 0, "/outputs"}, fmt::format("got {}, which names no output{}", in_quotes(name.text()),
-                                                              suggestion(name.text(), asked_names(document_.root))));
+        const std::string problem = problem_of_place(document_.root, name.text());
+        diagnostics_.error({line, 0, "/outputs"},
+                           !problem.empty() ? problem
+                                            : fmt::format("got {}, which names no output{}", in_quotes(name.text()),
+                                                          suggestion(name.text(), asked_names(document_.root))));
         continue;
       }
       const Place place{line, 0, "/outputs/" + asked->name};

@@ -21,10 +21,26 @@ std::vector<int> pieces_of(const Model& model, const std::string& name) {
   return every;
 }
 
+/// The rotor of a hinge's drive, which is of no body.
+struct Rotor {
+  std::size_t rate;  ///< index in State::y
+  double inertia;    ///< seen from the hinge [kg m², kg]
+};
+
+std::vector<Rotor> rotors_of(const Model& model) {
+  std::vector<Rotor> rotors;
+  const Layout& layout = model.layout();
+  for (std::size_t h = 0; h < model.hinges().size(); ++h)
+    if (const double inertia = model.hinges()[h].reflected_inertia; inertia > 0)
+      rotors.push_back({layout.positions + layout.hinges[h].speed, inertia});
+  return rotors;
+}
+
 template <Content content>
 class BoundContent final : public BoundSensor {
  public:
-  explicit BoundContent(std::vector<int> bodies) : bodies_(std::move(bodies)) {}
+  BoundContent(std::vector<int> bodies, std::vector<Rotor> rotors)
+      : bodies_(std::move(bodies)), rotors_(std::move(rotors)) {}
   std::vector<SensorColumn> columns() const override {
     if (content == Content::energy) return {{"kinetic", "J"}, {"strain", "J"}, {"weight", "J"}};
     std::vector<SensorColumn> c;
@@ -42,6 +58,7 @@ class BoundContent final : public BoundSensor {
       sum.linear += own.linear;
       sum.angular += own.angular;
     }
+    for (const auto& [rate, inertia] : rotors_) sum.kinetic += 0.5 * inertia * state.y()[rate] * state.y()[rate];
     if constexpr (content == Content::energy) {
       values[0] = sum.kinetic;
       values[1] = sum.strain;
@@ -54,6 +71,7 @@ class BoundContent final : public BoundSensor {
 
  private:
   std::vector<int> bodies_;
+  std::vector<Rotor> rotors_;  ///< of all bodies' energy
 };
 
 template <Content content>
@@ -61,7 +79,8 @@ class ContentSensor final : public Sensor {
  public:
   explicit ContentSensor(std::string of) : of_(std::move(of)) {}
   std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
-    return std::make_unique<BoundContent<content>>(pieces_of(model, of_));
+    return std::make_unique<BoundContent<content>>(
+        pieces_of(model, of_), content == Content::energy && of_ == "all" ? rotors_of(model) : std::vector<Rotor>());
   }
 
  private:

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/study/advice_search.hpp"
 #include "withy/study/advice_yardstick.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/own_instants.hpp"
 
 namespace withy::study {
 namespace {
@@ -100,15 +100,6 @@ void finish(Search& search, Evaluator& evaluator, Advice& advice) {
   for (Probe& p : advice.above) p.cost = evaluator.cost(p);
 }
 
-/// Which load switches or which event acts, of a model that has one.
-std::string what_switches(const Model& model) {
-  if (const EventBook book(model); book.any()) return fmt::format("event '{}' acts", book.plan().events.front().name);
-  for (const LoadNode& load : model.loads())
-    if (load.load->discrete() != nullptr && load.load->discrete()->switches() > 0)
-      return fmt::format("load '{}' switches at zeros of a function of the state", load.name);
-  return "a load switches";
-}
-
 /// Goes on with the reference where what would cost clearly less than the best holds the accuracy itself, but not with
 /// what the reference may be off by.
 void refine(Search& search, Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
@@ -128,9 +119,9 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   const Scene& scene = evaluator.base().scene;
   if (has_switches(*scene.model))
     throw InputError(fmt::format(
-        "{}: {}, at times of its own in every model; runs that are measured against each other need common ones here. "
-        "'withy trade' and 'withy compare' take it",
-        scene.file, what_switches(*scene.model)));
+        "{}: {}; runs that are measured against each other need common instants here. 'withy trade' and 'withy "
+        "compare' take it",
+        scene.file, own_instants(*scene.model)));
   accuracy.require_something_of(evaluator.outputs());
   require_a_run(scene);
   Advice advice;

@@ -11,6 +11,7 @@
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/scene/scene_parts.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/own_instants.hpp"
 #include "withy/study/point.hpp"
 
 namespace withy::study {
@@ -110,10 +111,8 @@ Prepared compiled(SceneValues values, Scene scene, Registry& registry) {
   }
   if (prepared.scene.formulation_name == "auto") {
     if (EventBook(prepared.model()).any())
-      throw InputError(
-          prepared.scene.file +
-          ": /events: an event acts at a time of its own in every formulation, and 'auto' compares them along "
-          "the run; name one formulation");
+      throw InputError(prepared.scene.file + ": /events: " + own_instants(prepared.model()) +
+                       "; 'auto' compares formulations along the run and takes no such event: name one formulation");
     make_rungs(prepared, registry);
     if (prepared.rungs.empty()) throw InputError(prepared.scene.file + ": formulation auto: no formulation is found");
   }

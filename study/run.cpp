@@ -21,6 +21,7 @@
 #include "withy/study/indicators.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/output_reader.hpp"
+#include "withy/study/own_instants.hpp"
 #include "withy/study/remedy.hpp"
 #include "withy/study/rung_plan.hpp"
 #include "withy/study/sampled_growth.hpp"
@@ -183,8 +184,7 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
   if (!loops_of(prepared.model()).empty())
     return "not estimated: loops are closed (constraints), and two formulations in one run know trees alone";
   if (has_switches(prepared.model()) && beyond)
-    return "not estimated: loads switch or events act at the zeros of functions, and two formulations have no common "
-           "steps";
+    return "not estimated: " + own_instants(prepared.model()) + "; two formulations in one run need common instants";
   if (!(summary.final.time > prepared.scene.initial.time)) return "not estimated: no motion of this run can be trusted";
   if (prepared.scene.formulation->terms().strain == StrainOrder::exact && !beyond)
     return "nothing is left out: kinematics is exact and nothing is truncated";
@@ -216,7 +216,7 @@ MoreModesOutcome more_modes(const Prepared& prepared, Registry& registry, const 
   if (settings.estimate != Estimate::always)
     return {{}, "it was not asked for; `--estimate always` compares with one more of each"};
   if (has_switches(prepared.model()))
-    return {{}, "loads switch or events act at the zeros of functions, at times of their own in every model"};
+    return {{}, own_instants(prepared.model()) + "; two runs that are compared need common instants"};
   if (!comparable) return {{}, "no motion of this run can be compared"};
   return with_one_mode_more(prepared, registry, summary.final.time, settings.control.interrupted);
 }

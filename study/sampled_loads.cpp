@@ -78,7 +78,7 @@ void SampledLoads::find_period() {
   }
   if (!(period_ > 0))
     throw InputError(
-        fmt::format("the periods of the sampled loads, {:g} s to {:g} s, have no common multiple within {:g} "
+        fmt::format("the periods of the sampled loads, {} s to {} s, have no common multiple within {:g} "
                     "samples of the shortest",
                     least, greatest, most_instants));
   for (const Part& part : loads_) {

@@ -33,11 +33,13 @@ Matrix6 seen_from(const Pose& AB, const Matrix6& I) {
   return twist.transpose() * I * twist;
 }
 
-/// What is left of an inertia where a hinge gives way.
-Matrix6 through(const Matrix6& I, const Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>& H) {
+/// What is left of an inertia where a hinge gives way, whose drive has an inertia of its own in each rate.
+Matrix6 through(const Matrix6& I, const Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>& H, double reflected) {
   const Eigen::MatrixXd IH = I * H;
+  Eigen::MatrixXd resisting = H.transpose() * IH;
+  resisting.diagonal().array() += reflected;
   // Not inverted: what is free may have no inertia.
-  const Eigen::MatrixXd solved = (H.transpose() * IH).completeOrthogonalDecomposition().solve(IH.transpose());
+  const Eigen::MatrixXd solved = resisting.completeOrthogonalDecomposition().solve(IH.transpose());
   return I - IH * solved;
 }
 
@@ -77,12 +79,13 @@ std::vector<Matrix6> tip_loads(const Model& model, const State& state) {
     const Slot& slot = model.layout().hinges[b];
     const std::span<const double> y = state.y;
     HingeMotion motion;
+    motion.H.resize(6, static_cast<Eigen::Index>(slot.speeds));
     const std::vector<double> still(slot.speeds, 0.0);
     hinge.hinge->motion(y.subspan(slot.position, slot.positions), still, motion);
     const Frame& own = bodies[b].frames[static_cast<std::size_t>(hinge.child_frame)];
     const Pose M = Pose{Matrix3::Identity(), own.section.X} * own.pose;
     Matrix6 seen = seen_from(M.inverse(), articulated[b]);
-    if (slot.speeds > 0 && !model.driven(b)) seen = through(seen, motion.H);
+    if (slot.speeds > 0 && !model.driven(b)) seen = through(seen, motion.H, hinge.reflected_inertia);
     const auto parent = static_cast<std::size_t>(hinge.parent);
     const Frame& carrying = bodies[parent].frames[static_cast<std::size_t>(hinge.parent_frame)];
     seen = seen_from(carrying.pose * hinge.offset * motion.pose, seen);

@@ -19,8 +19,9 @@ inline constexpr const char* loaded_modes = "clamped-loaded";
 /// The articulated inertia of what hangs at the tip of each body, in the order of the model's: a symmetric map of
 /// twists (angular first, [rad/s], [m/s]) of the tip's section, in its axes and about its origin, to momenta [kg m²/s],
 /// [kg m/s]. Hinges beyond give way as they are placed at the state, those that motions drive hold; bodies are rigid
-/// and undeformed; loads and what closes loops do not matter. Of a body I, seen through its hinge with the subspace H:
-///   I − I H (Hᵀ I H)⁻¹ Hᵀ I   (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 7.1)
+/// and undeformed; loads and what closes loops do not matter. Of a body I, seen through its hinge with the subspace H
+/// and the reflected inertia n²J:
+///   I − I H (Hᵀ I H + n²J)⁻¹ Hᵀ I   (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 7.1)
 /// Zero for bodies without a station `tip`, and where nothing hangs there.
 /// \param state of the model
 std::vector<Matrix6> tip_loads(const Model& model, const State& state);

@@ -16,7 +16,9 @@ ExitStatus check(const CheckArguments& arguments) {
   const Engine engine(arguments);
   study::check_start(engine.prepared());
   const std::vector<study::Remark> remarks = study::implausible(engine.prepared(), engine.registry());
-  print(arguments.json ? json_text(remarks_json(engine.scene(), remarks)) : remarks_text(engine.scene(), remarks));
+  const std::vector<std::string>& origins = engine.prepared().values.origins();
+  print(arguments.json ? json_text(remarks_json(engine.scene(), remarks, origins))
+                       : remarks_text(engine.scene(), remarks, origins));
   return arguments.strict && !remarks.empty() ? ExitStatus::bad_input : ExitStatus::done;
 }
 

@@ -5,6 +5,7 @@
 
 #include "withy/apps/withy/engine.hpp"
 #include "withy/fem/import_report.hpp"
+#include "withy/fem/surface.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/output_name.hpp"
@@ -43,8 +44,9 @@ ExitStatus import_mesh(const ImportArguments& a) {
     const auto read = fem::files_read(a);
     const std::string file =
         output_name(a.out, std::filesystem::path(a.job).filename().string() + ".SID_FEM", a.force, read);
+    const std::string drawn = fem::surface_file(file);
     const std::string surface =
-        output_name("", fem::surface_file(file), a.force || !a.out.empty() || imported.drawn.text.empty(), read);
+        output_name("", drawn, a.force || imported.drawn.text.empty() || fem::is_surface(drawn), read);
     write_file(file, sid::write(imported.data));
     if (!imported.drawn.text.empty()) write_file(surface, imported.drawn.text);
     const auto report = fem::import_json(imported, file);

@@ -2,7 +2,6 @@
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/results/json_text.hpp"
-#include "withy/results/picture_file.hpp"
 #include "withy/results/plotted_runs.hpp"
 #include "withy/results/terminal_plot.hpp"
 
@@ -13,17 +12,13 @@ struct PlotArguments {
   std::vector<std::string> given;  ///< folders of runs, then columns
   std::string out;
   bool terminal = false;
+  bool force = false;
   std::vector<double> over;  ///< a place [m] a column; empty: over time
   bool json = false;
 };
 
 ExitStatus plot(const PlotArguments& arguments) {
   const PlottedRuns runs(arguments.given);
-  if (!arguments.over.empty() && arguments.over.size() != runs.names().size()) {
-    complain("--over has " + std::to_string(arguments.over.size()) + " places for " +
-             std::to_string(runs.names().size()) + " columns; need one each");
-    return ExitStatus::bad_input;
-  }
   const DrawnRuns drawn = runs.drawn(arguments.over);
   if (drawn.picture.panels.empty()) {
     complain("nothing changes in what was recorded: name the columns to draw");
@@ -33,8 +28,8 @@ ExitStatus plot(const PlotArguments& arguments) {
     print(terminal_plot(drawn.picture.legend, drawn.picture.panels) + drawn.remarks());
     return ExitStatus::done;
   }
-  const std::filesystem::path out = runs.picture(arguments.out);
-  write_picture(out, svg_plot(drawn.picture));
+  const std::filesystem::path out = runs.picture(arguments.out, arguments.force);
+  draw_plot(drawn.picture, out);
   print(arguments.json ? json_text({{"file", out.string()},
                                     {"columns", drawn.columns},
                                     {"of_columns", drawn.telling},
@@ -51,6 +46,7 @@ void add_plot(Options& o, PlotArguments& a) {
   o.value("--out", a.out, "FILE", "File of the picture, .svg or .png; default: plot.svg in the first folder");
   o.list("--over", a.over, "X,…",
          "A place [m] for each column: their least and greatest over these in place of time, an envelope");
+  o.flag("--force", a.force, "Replace a plot.svg in the first folder that withy has not drawn");
   o.flag("--terminal", a.terminal, "Draw in the terminal");
   add_json(o, a.json).excludes("--terminal");
 }

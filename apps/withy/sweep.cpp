@@ -81,7 +81,7 @@ void add_submit(Options& o, SweepArguments& a) {
 }
 
 void add_store(Options& o, SweepArguments& a) {
-  o.value("STORE,--out,--store", a.store, "STORE", "Folder of the results").required();
+  o.value("STORE,--out,--store", a.store, "STORE", "Folder of the results, by its place or by name").required();
   add_common(o, a);
 }
 

@@ -6,8 +6,8 @@
 
 #include "withy/bindings/fmi/dynamics.hpp"
 #include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/plugin/refined_difference.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
-#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy::fmi {
 

@@ -32,8 +32,8 @@ std::vector<Column> state_columns(const Model& model) {
   }
   for (const Slot& body : layout.bodies) {
     for (std::size_t i = 0; i < body.speeds; ++i) {
-      all[body.position + i] = {layout.speed_names[body.speed + i], ""};
-      all[layout.positions + body.speed + i] = {layout.speed_names[body.speed + i] + ".rate", ""};
+      all[body.position + i] = {layout.speed_names[body.speed + i], "1"};
+      all[layout.positions + body.speed + i] = {layout.speed_names[body.speed + i] + ".rate", "1/s"};
     }
   }
   for (std::size_t i = 0; i < layout.continuous; ++i)

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "withy/core/tangents/refined_difference.hpp"
+#include "withy/core/plugin/refined_difference.hpp"
 
 namespace withy {
 

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <span>
 
+#include "withy/core/plugin/refined_difference.hpp"
+#include "withy/core/tangents/displacements.hpp"
 #include "withy/core/tangents/load_derivatives.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
-#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy {
 namespace {
@@ -33,7 +34,7 @@ void add_differences(const TangentDynamics& dynamics, std::size_t load, const St
             move(moved, h);
             return efforts_of(model, load, state.time, moved);
           },
-          analysis::difference_step);
+          analysis::difference_step, greatest_moved(state.y, move));
     };
     part.by_position.col(j) +=
         slope([&](std::vector<double>& y, double h) { dynamics.displace(y, h * Eigen::VectorXd::Unit(n, j)); });

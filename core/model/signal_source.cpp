@@ -50,7 +50,7 @@ std::optional<std::size_t> place_of(const std::string& name, const std::vector<C
 }
 
 /// Nothing where no hinge has a column of this name.
-std::optional<SignalSource> of_hinge(const Model& model, const std::string& name) {
+std::optional<SignalSource> hinge_source(const Model& model, const std::string& name) {
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const Slot& slot = model.layout().hinges[h];
     if (const auto i = place_of(name, coordinate_columns(model.hinges()[h])))
@@ -62,7 +62,7 @@ std::optional<SignalSource> of_hinge(const Model& model, const std::string& name
 }
 
 /// Nothing where no load gives a number of this name.
-std::optional<SignalSource> of_load(const Model& model, const std::string& name) {
+std::optional<SignalSource> load_source(const Model& model, const std::string& name) {
   for (std::size_t l = 0; l < model.loads().size(); ++l) {
     const std::vector<std::string> given = names_of(model.loads()[l]);
     const auto at = std::find(given.begin(), given.end(), name);
@@ -79,8 +79,8 @@ UnknownSignal::UnknownSignal(std::string called, std::vector<std::string> there_
       known(std::move(there_are)) {}
 
 SignalSource find_signal(const Model& model, const std::string& name) {
-  if (const auto source = of_hinge(model, name)) return *source;
-  if (const auto source = of_load(model, name)) return *source;
+  if (const auto source = hinge_source(model, name)) return *source;
+  if (const auto source = load_source(model, name)) return *source;
   std::size_t first = 0;
   for (const SensorNode& node : measured(model)) {
     if (node.sensor == nullptr) {
@@ -95,7 +95,7 @@ SignalSource find_signal(const Model& model, const std::string& name) {
 }
 
 bool is_of_hinge_and_load(const Model& model, const std::string& name) {
-  return of_hinge(model, name) && of_load(model, name);
+  return hinge_source(model, name) && load_source(model, name);
 }
 
 }  // namespace withy

@@ -26,20 +26,23 @@ std::string find_fault(const BodyCut& cut, Eigen::Index modes);
 /// What is wrong with a hinge near its reference, or empty: numbers of coordinates and rates that none has, a reference
 /// or a motion that is not finite, R that is no rotation, or another motion than the kernel's that it says it is; H
 /// that is not the derivative of its pose, a bias that is not that of H, and derivatives of both (motion_derivative)
-/// that are none. These are compared with differences over steps from 1e-2 to 1e-5, to 1e-4 of their size; one that
-/// agrees will do. Whatever the hinge throws comes out.
+/// that are none. These are compared with differences over steps of 1e-2 and less, to 1e-4 of their size, as
+/// false_slope (false_slope.hpp) does: where differences do not tell, as at a kink, nothing is said. It is looked at at
+/// two places beside the reference, on the other side where it cannot be at one, and nearer where it can be at neither.
+/// Whatever the hinge throws comes out.
 std::string find_fault(const Hinge& hinge);
 /// What is wrong with a motion, or empty: a rate that is not the derivative of its coordinate, an acceleration that is
 /// not that of its rate, or one that is not finite where the coordinate is. These are compared with differences at four
 /// times until its end, of one without an end of the first second or until its last discontinuity, to 1e-4 of the
-/// greatest, over steps that lead over no discontinuity. Where differences do not come together, as of what is faster
-/// than the shortest of them, nothing is said. One that locks is not looked at. Whatever the motion throws comes out.
+/// greatest, over steps that lead over no discontinuity. Where differences do not tell (false_slope.hpp), as of what is
+/// faster than the shortest of them or rounds the time, nothing is said. One that locks is not looked at. Whatever the
+/// motion throws comes out.
 std::string find_fault(const Motion& motion);
 /// What is wrong with the rod of a body, or empty: other modes, another mass or other deflections than the body's, a
 /// length or wave number that is none, kinks that do not increase inside it, sections that are not finite, without
 /// clamped root or of an inertia that none has, and rotations and deflections that are not the integrals of its
-/// strains. Integrals are compared with differences over steps from 1e-2 to 1e-5 of 1/β, to 1e-4 of the greatest; one
-/// that agrees will do.
+/// strains. Integrals are compared with differences over steps of 1e-2 of 1/β and less, to 1e-4 of the greatest; where
+/// these do not tell (false_slope.hpp), as at a kink, nothing is said.
 std::string find_fault(const Rod& rod, const ModalShape& shape);
 /// What is wrong with the numbers that a sensor says it gives, or empty: none at all, two of one name, a name or unit
 /// that the head of a table cannot hold, as one with a comma.

@@ -6,17 +6,20 @@
 #include <vector>
 
 #include "withy/core/model/validate.hpp"
+#include "withy/core/plugin/false_slope.hpp"
 
 namespace withy {
 namespace {
 
 using Numbers = std::vector<double>;
 
-/// Differences of steps this long; smooth motions agree with one of them, whatever their size.
-constexpr std::array<double, 4> difference_steps = {1e-2, 1e-3, 1e-4, 1e-5};
-/// Of what a rate gives: far above the error of the best of these differences, far below a factor that is forgotten.
-constexpr double motion_tolerance = 1e-4;
+constexpr double hinge_step = 1e-2;       ///< the longest of those of differences, in the unit of coordinates
 constexpr double motion_rounding = 1e-8;  // [1/rad, m/rad, 1/m, 1], of differences of numbers of size one
+/// From the reference along rates of about one, to either side: at the first two it is looked at; where the hinge
+/// cannot be there, nearer. Round numbers are where tables have their rows.
+constexpr std::array<double, 6> looked_at = {0.0137, 0.0931, 1.37e-3, 1.37e-4, 1.37e-5, 1.37e-6};
+
+using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Rates that no two of are alike.
 Numbers test_rates(std::size_t count) {
@@ -65,22 +68,18 @@ std::string rotation_fault(const Pose& pose) {
   return text.str();
 }
 
-/// Angular and linear parts have other units.
-bool agree(const Vector6& a, const Vector6& b) {
-  const auto part = [&](Eigen::Index first) {
-    const Vector3 left = a.segment<3>(first), right = b.segment<3>(first);
-    return (left - right).norm() <= motion_tolerance * std::max(left.norm(), right.norm()) + motion_rounding;
-  };
-  return part(0) && part(3);
+/// The angular and linear parts of twists, which have other units.
+Eigen::MatrixXd parts_of(const Twists& twists) {
+  return Eigen::Map<const Eigen::MatrixXd>(twists.data(), 3, 2 * twists.cols());
 }
 
-/// The twist between the poses at both ends of a difference, in the axes between them.
-Vector6 twist_of(const Pose& behind, const Pose& here, const Pose& ahead, double distance) {
-  const Matrix3 turn = here.R.transpose() * (ahead.R - behind.R) / (2 * distance);
-  Vector6 twist;
-  twist << (turn(2, 1) - turn(1, 2)) / 2, (turn(0, 2) - turn(2, 0)) / 2, (turn(1, 0) - turn(0, 1)) / 2,
-      here.R.transpose() * (ahead.p - behind.p) / (2 * distance);
-  return twist;
+/// What changes by the twist of a pose, in the axes that it has here.
+Vector6 place_from(const Pose& here, const Pose& pose) {
+  const Matrix3 turn = here.R.transpose() * pose.R;
+  Vector6 place;
+  place << (turn(2, 1) - turn(1, 2)) / 2, (turn(0, 2) - turn(2, 0)) / 2, (turn(1, 0) - turn(0, 1)) / 2,
+      here.R.transpose() * pose.p;
+  return place;
 }
 
 std::string difference(const std::string& what, const Vector6& said, const Vector6& found) {
@@ -91,18 +90,26 @@ std::string difference(const std::string& what, const Vector6& said, const Vecto
   return text.str();
 }
 
-/// Whether `said` is what some step finds; the finest where none does. Steps that lead to what is not finite say
-/// nothing.
-template <class Find>
-std::string compared(const std::string& what, const Vector6& said, Find&& find) {
-  Vector6 found = said;
-  for (const double step : difference_steps) {
-    const Vector6 now = find(step);
-    if (!now.allFinite()) continue;
-    if (agree(said, now)) return {};
-    found = now;
-  }
-  return found == said ? std::string() : difference(what, said, found);
+/// Compares what is said to be the derivatives of twists, by names, with respect to a displacement along rates from x.
+template <class Name, class TwistsAt>
+std::string twist_fault(const Hinge& hinge, const Numbers& x, const Numbers& along, const Twists& said, Name&& name,
+                        TwistsAt&& twists_at) {
+  double place = 0;
+  for (const double number : x) place = std::max(place, std::abs(number));
+  const Eigen::MatrixXd parts = parts_of(said);
+  const auto wrong = false_slope(
+      {parts, parts.colwise().norm(), Eigen::RowVectorXd::Constant(parts.cols(), motion_rounding)},
+      [&](double s) { return parts_of(twists_at(displaced(hinge, x, along, s))); }, hinge_step, place);
+  if (!wrong) return {};
+  const Eigen::Index column = wrong->column / 2;
+  Vector6 found;
+  found << wrong->found.col(2 * column), wrong->found.col(2 * column + 1);
+  return difference(name(column), said.col(column), found);
+}
+
+/// Whether all numbers are, where there are none too.
+bool are_same(const Twists& a, const Twists& b) {
+  return (a.array() == b.array() || (a.array().isNaN() && b.array().isNaN())).all();
 }
 
 /// Of the derivatives that a hinge gives along one rate, at a place where its motion is finite. Those of Hinge itself
@@ -115,23 +122,20 @@ std::string derivative_fault_along(const Hinge& hinge, const Numbers& x, const N
   const std::string name = "the derivative of H along rate " + std::to_string(along + 1);
   if (std::string fault = width_fault(name, said, rates.size()); !fault.empty()) return fault;
   hinge.Hinge::motion_derivative(x, rates, along, by_default);
-  if (said.H == by_default.H && said.bias == by_default.bias) return {};
+  if (are_same(said.H, by_default.H) && are_same(said.bias, by_default.bias)) return {};
   Numbers unit(rates.size(), 0.0);
   unit[along] = 1;
-  const auto differences = [&](double step) {
-    HingeMotion ahead = motion_at(hinge, displaced(hinge, x, unit, step), rates);
-    const HingeMotion behind = motion_at(hinge, displaced(hinge, x, unit, -step), rates);
-    ahead.H = (ahead.H - behind.H) / (2 * step);
-    ahead.bias = (ahead.bias - behind.bias) / (2 * step);
-    return ahead;
+  const auto twists = [](const HingeMotion& m) {
+    Twists all(6, m.H.cols() + 1);
+    all << m.H, m.bias;
+    return all;
   };
-  for (Eigen::Index i = 0; i < speeds; ++i) {
-    const std::string fault = compared(name + ", column " + std::to_string(i + 1) + ",", said.H.col(i),
-                                       [&](double step) -> Vector6 { return differences(step).H.col(i); });
-    if (!fault.empty()) return fault;
-  }
-  return compared("the derivative of the bias along rate " + std::to_string(along + 1), said.bias,
-                  [&](double step) { return differences(step).bias; });
+  const auto named = [&](Eigen::Index i) {
+    if (i < speeds) return name + ", column " + std::to_string(i + 1) + ",";
+    return "the derivative of the bias along rate " + std::to_string(along + 1);
+  };
+  return twist_fault(hinge, x, unit, twists(said), named,
+                     [&](const Numbers& at) { return twists(motion_at(hinge, at, rates)); });
 }
 
 std::string derivative_fault(const Hinge& hinge, const Numbers& x, const Numbers& rates) {
@@ -146,19 +150,16 @@ std::string rates_fault(const Hinge& hinge, const Numbers& x, const Numbers& rat
   for (std::size_t i = 0; i < rates.size(); ++i) {
     Numbers unit(rates.size(), 0.0);
     unit[i] = 1;
-    const std::string fault = compared(
-        "column " + std::to_string(i + 1) + " of H", here.H.col(static_cast<Eigen::Index>(i)), [&](double step) {
-          return twist_of(motion_at(hinge, displaced(hinge, x, unit, -step), rates).pose, here.pose,
-                          motion_at(hinge, displaced(hinge, x, unit, step), rates).pose, step);
-        });
+    const std::string fault = twist_fault(
+        hinge, x, unit, here.H.col(static_cast<Eigen::Index>(i)),
+        [&](Eigen::Index) { return "column " + std::to_string(i + 1) + " of H"; },
+        [&](const Numbers& at) -> Twists { return place_from(here.pose, motion_at(hinge, at, rates).pose); });
     if (!fault.empty()) return fault;
   }
   const Eigen::Map<const Eigen::VectorXd> u(rates.data(), static_cast<Eigen::Index>(rates.size()));
-  return compared("the bias", here.bias, [&](double step) -> Vector6 {
-    return (motion_at(hinge, displaced(hinge, x, rates, step), rates).H * u -
-            motion_at(hinge, displaced(hinge, x, rates, -step), rates).H * u) /
-           (2 * step);
-  });
+  return twist_fault(
+      hinge, x, rates, here.bias, [](Eigen::Index) { return std::string("the bias"); },
+      [&](const Numbers& at) -> Twists { return motion_at(hinge, at, rates).H * u; });
 }
 
 struct KernelSizes {
@@ -250,6 +251,35 @@ std::string place_fault(const Hinge& hinge, const std::optional<HingeKernel>& ke
   return derivative_fault(hinge, x, rates);
 }
 
+/// At one place or, where it cannot be there, at the one opposite. \param unbounded null where it can be at one
+std::string fault_beside(const Hinge& hinge, const std::optional<HingeKernel>& kernel, const Numbers& reference,
+                         double distance, const char*& unbounded) {
+  const Numbers rates = test_rates(hinge.speeds());
+  for (const double side : {distance, -distance}) {
+    const Numbers x = displaced(hinge, reference, rates, side);
+    if (std::string fault = derivatives_fault(hinge, x, rates); !fault.empty()) return fault;
+    const HingeMotion here = motion_at(hinge, x, rates);
+    if (std::string fault = width_fault("H", here, rates.size()); !fault.empty()) return fault;
+    unbounded = unbounded_part(here);
+    if (unbounded == nullptr) return place_fault(hinge, kernel, x, rates);
+  }
+  return {};
+}
+
+/// Beside the reference, where columns may vanish that do not elsewhere.
+std::string motion_fault(const Hinge& hinge, const std::optional<HingeKernel>& kernel, const Numbers& reference) {
+  const char* first_unbounded = nullptr;
+  bool met = false;
+  for (std::size_t k = 0; k < looked_at.size() && !(met && k >= 2); ++k) {
+    const char* unbounded = nullptr;
+    if (std::string fault = fault_beside(hinge, kernel, reference, looked_at[k], unbounded); !fault.empty())
+      return fault;
+    met = met || unbounded == nullptr;
+    if (first_unbounded == nullptr) first_unbounded = unbounded;
+  }
+  return met ? std::string() : std::string("its ") + first_unbounded + " is not finite near its reference";
+}
+
 }  // namespace
 
 std::string find_fault(const Hinge& hinge) {
@@ -267,23 +297,7 @@ std::string find_fault(const Hinge& hinge) {
   Numbers reference(coordinates);
   hinge.reference(reference);
   if (std::string fault = reference_fault(reference); !fault.empty()) return fault;
-  const Numbers rates = test_rates(speeds);
-  // Beside the reference, where columns may vanish that do not elsewhere.
-  const char* unbounded = nullptr;
-  bool met = false;
-  for (const double distance : {0.01, 0.1}) {
-    const Numbers x = displaced(hinge, reference, rates, distance);
-    if (std::string fault = derivatives_fault(hinge, x, rates); !fault.empty()) return fault;
-    const HingeMotion here = motion_at(hinge, x, rates);
-    if (std::string fault = width_fault("H", here, speeds); !fault.empty()) return fault;
-    if (const char* part = unbounded_part(here); part != nullptr) {
-      unbounded = part;  // it may be that it cannot be there
-      continue;
-    }
-    met = true;
-    if (std::string fault = place_fault(hinge, kernel, x, rates); !fault.empty()) return fault;
-  }
-  return met ? std::string() : std::string("its ") + unbounded + " is not finite near its reference";
+  return motion_fault(hinge, kernel, reference);
 }
 
 }  // namespace withy

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "withy/core/model/validate.hpp"
+#include "withy/core/plugin/false_slope.hpp"
 
 namespace withy {
 namespace {
@@ -14,10 +15,9 @@ namespace {
 /// Parts of the time where no table has a row.
 constexpr std::array<double, 4> compared_times = {0.1371742, 0.4142136, 0.6830127, 0.9318517};
 /// Of the whole time; in no simple ratio to any period, so that what is fast does not seem to stand still.
-constexpr std::array<double, 8> time_steps = {1.1939e-2, 1.2719e-3, 1.1173e-4, 1.3297e-5,
-                                              1.0729e-6, 1.2347e-7, 1.1411e-8, 1.3163e-9};
-/// Of the greatest: far above the error of the best of these differences, far below a factor that is forgotten.
-constexpr double course_tolerance = 1e-4;
+constexpr double time_step = 1.1939e-2;
+/// Of the whole time: jumps that are nearer leave no steps.
+constexpr double nearest_jump = 1e-9;
 
 struct Derivative {
   const char* name;
@@ -47,11 +47,6 @@ class ComparedCourse {
   }
 
  private:
-  /// One difference of what is differentiated, and what rounding may make of it.
-  struct Difference {
-    double value, rounding;
-  };
-
   [[nodiscard]] std::string fault_at(std::size_t i, const Derivative& d) const {
     const double t = compared_times[i] * span_, said = points_[i].*d.value;
     if (!std::isfinite(points_[i].position)) return {};  // the motion is not for this time
@@ -59,41 +54,24 @@ class ComparedCourse {
     double greatest = 0;
     for (const MotionPoint& p : points_)
       if (std::isfinite(p.*d.value)) greatest = std::max(greatest, std::abs(p.*d.value));
-    Difference before = {std::numeric_limits<double>::quiet_NaN(), 0};
-    bool together = false;  // the finest two that say something
-    for (const double step : time_steps) {
-      const double h = step * span_;
-      if (leads_over_jump(t, h)) continue;
-      const Difference found = difference(t, h, d);
-      const double allowed = course_tolerance * std::max(greatest, std::abs(found.value));
-      if (!(found.rounding <= allowed)) continue;
-      if (std::abs(said - found.value) <= allowed) return {};
-      together = agree_of_steps(before, found, step == time_steps.back());
-      before = found;
-    }
-    if (!together) return {};
+    const double h = std::min(time_step * span_, nearest(t) / 6);
+    if (!(h > nearest_jump * span_)) return {};
+    const auto integral = [&](double s) -> Eigen::MatrixXd {
+      return Eigen::MatrixXd::Constant(1, 1, motion_.at(t + s).*d.integral);
+    };
+    const auto number = [](double x) { return Eigen::RowVectorXd::Constant(1, x); };
+    const auto wrong = false_slope({number(said), number(greatest), number(0)}, integral, h, t);
+    if (!wrong) return {};
     std::ostringstream text = said_text(t, d, said);
-    text << "; differences of its " << d.of << " give " << before.value;
+    text << "; differences of its " << d.of << " give " << wrong->found(0, 0);
     return text.str();
   }
 
-  /// Nothing at all is found of what stands still, and of what is lost in rounding: that the finest step tells apart.
-  static bool agree_of_steps(const Difference& coarse, const Difference& fine, bool finest) {
-    const double allowed = course_tolerance * std::abs(fine.value);
-    if (std::abs(coarse.value - fine.value) <= allowed && fine.rounding <= allowed) return true;
-    return finest && std::abs(fine.value) <= fine.rounding && std::abs(coarse.value) <= coarse.rounding;
-  }
-
-  [[nodiscard]] Difference difference(double t, double h, const Derivative& d) const {
-    const MotionPoint behind = motion_.at(t - h), ahead = motion_.at(t + h);
-    const double from = behind.*d.integral, to = ahead.*d.integral, value = (to - from) / (2 * h);
-    // Of both values, and of the times at which they are.
-    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
-    return {value, rounding * (std::max(std::abs(from), std::abs(to)) + std::abs(t * value)) / h};
-  }
-
-  [[nodiscard]] bool leads_over_jump(double t, double h) const {
-    return std::any_of(jumps_.begin(), jumps_.end(), [&](double at) { return std::abs(at - t) <= 1.01 * h; });
+  /// How far a jump is away [s].
+  [[nodiscard]] double nearest(double t) const {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const double at : jumps_) distance = std::min(distance, std::abs(at - t));
+    return distance;
   }
 
   static std::ostringstream said_text(double t, const Derivative& d, double said) {

@@ -7,6 +7,7 @@
 
 #include "withy/core/model/matrix_faults.hpp"
 #include "withy/core/model/validate.hpp"
+#include "withy/core/plugin/false_slope.hpp"
 #include "withy/core/plugin/most_waves.hpp"
 #include "withy/core/shape/panel_quadrature.hpp"
 
@@ -15,8 +16,7 @@ namespace {
 
 /// Parts of the length where no table has a row.
 constexpr std::array<double, 4> compared_sections = {0.1371742, 0.4142136, 0.6830127, 0.9318517};
-/// Of 1/β: smooth fields agree with differences over one of them, also near a kink.
-constexpr std::array<double, 4> section_steps = {1e-2, 1e-3, 1e-4, 1e-5};
+constexpr double section_step = 1e-2;  ///< the longest of those of differences, of 1/β
 /// Of the greatest: far above the error of these differences and of any quadrature of the mass, far below a factor that
 /// is forgotten.
 constexpr double rod_tolerance = 1e-4;
@@ -80,15 +80,20 @@ std::string rod_numbers_fault(const Rod& rod, Eigen::Index modes) {
   return {};
 }
 
+/// A column of a field and what it has to be.
+std::string difference_text(const std::string& name, Eigen::Index mode, const Vector3& is, const Vector3& needed,
+                            const std::string& by) {
+  const Eigen::IOFormat row(4, Eigen::DontAlignCols, " ", " ");
+  return said(name, " of mode ", mode + 1, " is (", is.transpose().format(row), "); ", by, " (",
+              needed.transpose().format(row), ")");
+}
+
 /// Columns of a field and what they have to be, to `tolerance`, a number a column.
 std::string column_fault(const std::string& name, const Matrix3X& is, const Matrix3X& needed,
                          const Eigen::RowVectorXd& tolerance, const std::string& by) {
-  for (Eigen::Index i = 0; i < is.cols(); ++i) {
-    if ((is.col(i) - needed.col(i)).norm() <= tolerance[i]) continue;
-    const Eigen::IOFormat row(4, Eigen::DontAlignCols, " ", " ");
-    return said(name, " of mode ", i + 1, " is (", is.col(i).transpose().format(row), "); ", by, " (",
-                needed.col(i).transpose().format(row), ")");
-  }
+  for (Eigen::Index i = 0; i < is.cols(); ++i)
+    if (!((is.col(i) - needed.col(i)).norm() <= tolerance[i]))
+      return difference_text(name, i, is.col(i), needed.col(i), by);
   return {};
 }
 
@@ -134,33 +139,30 @@ class ComparedRod {
     return slope;
   }
 
+  /// Rotations of all modes, then their deflections.
+  [[nodiscard]] static Eigen::MatrixXd fields_of(const RodSection& s) {
+    Eigen::MatrixXd fields(3, 2 * s.rotation.cols());
+    fields << s.rotation, s.deflection;
+    return fields;
+  }
+
   [[nodiscard]] std::string fault_at(std::size_t k) const {
     const double x = compared_sections[k] * rod_.length();
-    const RodSection& here = sections_[k];
-    const Matrix3X slope = slope_of(here);
-    const Eigen::RowVectorXd slopes = slope.colwise().norm();
-    std::string of_rotation, of_deflection;
-    bool turned = false, deflected = false;
-    for (const double step : section_steps) {
-      const double h = std::min(step / unit_, 0.05 * rod_.length());
-      const RodSection ahead = rod_.section(x + h), behind = rod_.section(x - h);
-      const auto judged = [&](const char* name, const char* by, const Matrix3X& is, const Matrix3X& from,
-                              const Matrix3X& to, const Eigen::RowVectorXd& sizes, double length) {
-        const Matrix3X found = (to - from) / (2 * h);
-        const Eigen::RowVectorXd scale = sizes.cwiseMax(found.colwise().norm());
-        return column_fault(said(name, " at x = ", x, " m"), is, found,
-                            rod_tolerance * scale + rod_rounding * unit_ * length * size_, by);
-      };
-      if (!turned)
-        of_rotation = judged("the strain", "differences of its rotation give", here.strain, behind.rotation,
-                             ahead.rotation, strain_, 1);
-      if (!deflected)
-        of_deflection = judged("rotation x e_x with elongation", "differences of its deflection give", slope,
-                               behind.deflection, ahead.deflection, slopes.cwiseMax(rotation_), rod_.length());
-      turned = of_rotation.empty(), deflected = of_deflection.empty();
-      if (turned && deflected) return {};
-    }
-    return turned ? of_deflection : of_rotation;
+    const Matrix3X slope = slope_of(sections_[k]);
+    const Eigen::RowVectorXd slopes = slope.colwise().norm(), least = rod_rounding * unit_ * size_;
+    SaidSlopes said_slopes{Eigen::MatrixXd(3, 2 * rod_.modes()), Eigen::RowVectorXd(2 * rod_.modes()),
+                           Eigen::RowVectorXd(2 * rod_.modes())};
+    said_slopes.slopes << sections_[k].strain, slope;
+    said_slopes.sizes << strain_, slopes.cwiseMax(rotation_);
+    said_slopes.least << least, rod_.length() * least;
+    const auto wrong = false_slope(
+        said_slopes, [&](double s) { return fields_of(rod_.section(x + s)); }, section_step / unit_, x);
+    if (!wrong) return {};
+    const bool turns = wrong->column < rod_.modes();
+    const Eigen::Index mode = wrong->column % rod_.modes();
+    return difference_text(said(turns ? "the strain" : "rotation x e_x with elongation", " at x = ", x, " m"), mode,
+                           said_slopes.slopes.col(wrong->column), wrong->found.col(wrong->column),
+                           turns ? "differences of its rotation give" : "differences of its deflection give");
   }
 
   const Rod& rod_;

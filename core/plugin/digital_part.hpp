@@ -18,7 +18,8 @@ class DigitalPart {
   [[nodiscard]] virtual bool gives_steps() const = 0;
   /// Whether it draws numbers: what it holds is another after each sample, whatever it measures.
   [[nodiscard]] virtual bool draws() const { return false; }
-  /// Count of its first discrete states that only outputs show, as an error: nothing that it does depends on them.
+  /// Count of its first discrete states that say what it does not depend on while it works: what outputs alone show, as
+  /// an error.
   [[nodiscard]] virtual std::size_t told() const { return 0; }
 };
 

@@ -1,8 +1,10 @@
 #include "withy/core/plugin/hinge.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
-#include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/plugin/refined_difference.hpp"
 
 namespace withy {
 
@@ -12,7 +14,9 @@ void Hinge::motion_derivative(std::span<const double> x, std::span<const double>
   std::vector<double> direction(coordinates()), displaced(coordinates()), unit(speeds(), 0.0);
   unit[along] = 1;
   derivatives(x, unit, direction);
-  Eigen::Matrix<double, 6, Eigen::Dynamic> both = central_difference(
+  double place = 0;
+  for (const double number : x) place = std::max(place, std::abs(number));
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> both = refined_difference(
       [&](double h) -> Eigen::Matrix<double, 6, Eigen::Dynamic> {
         for (std::size_t i = 0; i < displaced.size(); ++i) displaced[i] = x[i] + h * direction[i];
         normalize(displaced);
@@ -23,7 +27,7 @@ void Hinge::motion_derivative(std::span<const double> x, std::span<const double>
         values << m.H, m.bias;
         return values;
       },
-      0.02);
+      0.02, place);
   out.H = both.leftCols(n);
   out.bias = both.col(n);
 }

@@ -48,8 +48,9 @@ class Hinge {
   virtual void motion(std::span<const double> x, std::span<const double> rates, HingeMotion& out) const noexcept = 0;
   /// The derivatives of H and of the bias, at x and rates, with respect to a displacement along rate `along`: x changes
   /// as if that rate alone were one. In `out` the pose has no meaning; its derivative is R ω̂, R v with (ω, v) = H
-  /// e_along. For analyses: may allocate. The default differentiates `motion` numerically, to about twelve digits where
-  /// it is smooth over a few hundredths of a radian or metre.
+  /// e_along. For analyses: may allocate. The default differentiates `motion` numerically (refined_difference.hpp), to
+  /// about twelve digits where it is smooth over a few hundredths of a radian or metre, and to fewer where it is over
+  /// less.
   virtual void motion_derivative(std::span<const double> x, std::span<const double> rates, std::size_t along,
                                  HingeMotion& out) const;
   /// Time derivatives of the coordinates from the rates.

@@ -66,7 +66,8 @@ class ModeFamily {
 /// What is wrong with the functions that a family gives where `count` are asked for, or empty: another number of them,
 /// a wave number that is none or beyond most_waves / L, kinks that do not increase from 0 to L, numbers that are not
 /// finite, and slopes, in bending curvatures too, that are not the derivatives. These are compared at four places with
-/// differences over steps from 1e-2 to 1e-5 of 1/β, to 1e-4 of the greatest; one that agrees will do.
+/// differences over steps of 1e-2 of 1/β and less, to 1e-4 of the greatest; where these do not tell (false_slope.hpp),
+/// as at a kink, nothing is said.
 std::string find_fault(const ShapeFunctions& functions, const BeamData& beam, std::size_t count);
 
 /// The family that a scene's checked `family` names, as in make_shape_functions(). Null after reporting.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "withy/core/plugin/false_slope.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/core/plugin/most_waves.hpp"
 
@@ -12,10 +13,7 @@ namespace {
 
 /// Parts of the length where no table has a row and no function of an even beam a node.
 constexpr std::array<double, 4> compared_places = {0.1371742, 0.4142136, 0.6830127, 0.9318517};
-/// Of 1/β: smooth functions agree with differences over one of them, also near a kink.
-constexpr std::array<double, 4> compared_steps = {1e-2, 1e-3, 1e-4, 1e-5};
-/// Of the greatest derivative: far above the error of the best of these differences, far below a factor forgotten.
-constexpr double derivative_tolerance = 1e-4;
+constexpr double compared_step = 1e-2;        ///< the longest of those of differences, of 1/β
 constexpr double derivative_rounding = 1e-8;  ///< of the greatest value times β
 
 /// φ, φ′ and φ″ of all functions at a place.
@@ -28,9 +26,11 @@ ShapeValues values_at(const ShapeFunctions& functions, double x) {
   return v;
 }
 
-double greatest_of(const std::vector<ShapeValues>& places, std::size_t derivative, std::size_t function) {
-  double greatest = 0;
-  for (const ShapeValues& v : places) greatest = std::max(greatest, std::abs(v[derivative][function]));
+ShapeValues greatest_of(const std::vector<ShapeValues>& places) {
+  ShapeValues greatest = places.front();
+  for (std::size_t d = 0; d < greatest.size(); ++d)
+    for (std::size_t i = 0; i < greatest[d].size(); ++i)
+      for (const ShapeValues& v : places) greatest[d][i] = std::max(std::abs(greatest[d][i]), std::abs(v[d][i]));
   return greatest;
 }
 
@@ -44,6 +44,7 @@ class ComparedFunctions {
         // Curvatures are the strains of bending alone: nobody asks for those of twist and elongation.
         derivatives_(beam.strain == BeamData::Strain::bending ? 2 : 1) {
     for (const double part : compared_places) places_.push_back(values_at(functions, part * length_));
+    greatest_ = greatest_of(places_);
   }
 
   [[nodiscard]] std::string fault() const {
@@ -62,34 +63,25 @@ class ComparedFunctions {
     return {};
   }
 
-  [[nodiscard]] std::string fault_at(std::size_t place) const {
-    const double x = compared_places[place] * length_;
-    std::vector<std::array<double, 2>> found(functions_.count());
-    std::vector<std::array<bool, 2>> right(functions_.count(), {false, derivatives_ < 2});
-    for (const double step : compared_steps) {
-      const double h = std::min(step / unit_, 0.05 * length_);
-      const ShapeValues ahead = values_at(functions_, x + h), behind = values_at(functions_, x - h);
-      bool all = true;
-      for (std::size_t i = 0; i < functions_.count(); ++i) {
-        for (std::size_t d = 0; d < derivatives_; ++d) {
-          found[i][d] = (ahead[d][i] - behind[d][i]) / (2 * h);
-          right[i][d] = right[i][d] || agree(place, d, i, found[i][d]);
-          all = all && right[i][d];
-        }
-      }
-      if (all) return {};
-    }
+  /// Derivatives from the `first` on, as many as are compared: φ_1, φ_1′, φ_2, ….
+  [[nodiscard]] Eigen::RowVectorXd row_of(const ShapeValues& values, std::size_t first) const {
+    Eigen::RowVectorXd row(static_cast<Eigen::Index>(functions_.count() * derivatives_));
     for (std::size_t i = 0; i < functions_.count(); ++i)
       for (std::size_t d = 0; d < derivatives_; ++d)
-        if (!right[i][d]) return difference_text(place, d, i, found[i][d]);
-    return {};
+        row[static_cast<Eigen::Index>(i * derivatives_ + d)] = values[first + d][i];
+    return row;
   }
 
-  /// Of the derivative of the d-th derivative of a function.
-  [[nodiscard]] bool agree(std::size_t place, std::size_t d, std::size_t function, double found) const {
-    const double greatest = std::max(greatest_of(places_, d + 1, function), std::abs(found));
-    const double rounding = derivative_rounding * unit_ * greatest_of(places_, d, function);
-    return std::abs(places_[place][d + 1][function] - found) <= derivative_tolerance * greatest + rounding;
+  [[nodiscard]] std::string fault_at(std::size_t place) const {
+    const double x = compared_places[place] * length_;
+    SaidSlopes said{row_of(places_[place], 1), row_of(greatest_, 1),
+                    derivative_rounding * unit_ * row_of(greatest_, 0)};
+    const auto wrong = false_slope(
+        said, [&](double s) -> Eigen::MatrixXd { return row_of(values_at(functions_, x + s), 0); },
+        compared_step / unit_, x);
+    if (!wrong) return {};
+    const auto column = static_cast<std::size_t>(wrong->column);
+    return difference_text(place, column % derivatives_, column / derivatives_, wrong->found(0, wrong->column));
   }
 
   [[nodiscard]] std::ostringstream said_text(std::size_t place, std::size_t d, std::size_t function) const {
@@ -110,6 +102,7 @@ class ComparedFunctions {
   double length_, unit_;
   std::size_t derivatives_;  ///< how many of them are compared
   std::vector<ShapeValues> places_;
+  ShapeValues greatest_;
 };
 
 /// Ends of the beam may be among them, and one twice: nothing is integrated there.

@@ -1,8 +1,9 @@
 #include "withy/core/tangents/continuous_tangents.hpp"
 
+#include "withy/core/plugin/refined_difference.hpp"
+#include "withy/core/tangents/displacements.hpp"
 #include "withy/core/tangents/load_derivatives.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
-#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy {
 namespace {
@@ -23,7 +24,7 @@ void add_differences(Function&& of, const Layout& layout, std::span<const double
           move(moved, h);
           return of(moved);
         },
-        analysis::difference_step);
+        analysis::difference_step, greatest_moved(y, move));
   };
   const auto add = [&](const Eigen::VectorXd& of_both, auto&& efforts, auto&& rates) {
     efforts += of_both.head(n);
@@ -89,7 +90,7 @@ ContinuousTangents continuous_tangents(const Model& model, double t, std::span<c
             node.continuous->rates(view, {rates.data(), slot.count});
             return rates;
           },
-          analysis::difference_step);
+          analysis::difference_step, a[static_cast<std::size_t>(j)]);
     };
     // What it measures may be given by any load: its states are all among the columns.
     add_differences(part, layout, y, displace, first, count, 0, layout.continuous, all);

@@ -8,9 +8,9 @@
 #include <sstream>
 #include <vector>
 
+#include "withy/core/plugin/refined_difference.hpp"
 #include "withy/core/tangents/displacements.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
-#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy {
 namespace {
@@ -108,20 +108,21 @@ Comparison compare_slopes(const Model& model, const Told& told, Variable by, con
   constexpr double tolerance = 1e-6, rounding = 64 * std::numeric_limits<double>::epsilon();
   Eigen::ArrayXd sizes = Eigen::ArrayXd::Zero(told.slopes[by].rows());
   double shortest = std::numeric_limits<double>::infinity();
-  std::vector<double> moved;
+  const auto move = [&](std::span<double> moved, double h) { move_state(model, told, by, h * direction, moved); };
   const auto found = refine_difference(
       [&](double h) {
-        moved.assign(y.begin(), y.end());
-        move_state(model, told, by, h * direction, moved);
+        std::vector<double> moved(y.begin(), y.end());
+        move(moved, h);
         Eigen::VectorXd numbers = told.numbers(moved);
         sizes = sizes.max(numbers.array().abs());
         shortest = std::min(shortest, std::abs(h));
         return numbers;
       },
-      analysis::difference_step, 8);
+      analysis::difference_step, 8, greatest_moved(y, move));
   Comparison c{{}, told.slopes[by] * direction, found.slope};
   const Eigen::ArrayXd terms = (told.slopes[by].cwiseAbs() * direction.cwiseAbs()).array() + c.found.array().abs();
-  const Eigen::ArrayXd allowed = tolerance * terms + 10 * found.change.array() + rounding * sizes / shortest;
+  const Eigen::ArrayXd allowed =
+      tolerance * terms + 10 * found.change.array() + found.rounding.array() + rounding * sizes / shortest;
   const Eigen::ArrayXd off = (c.said - c.found).array().abs();
   // What differences do not tell says nothing; what is said to be no number is wrong where they do.
   c.wrong =

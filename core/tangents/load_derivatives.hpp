@@ -26,9 +26,10 @@ struct FalseDerivative {
 
 /// Compares what BoundLoad::add_derivatives and ContinuousPart::add_derivatives say with differences of what the load
 /// gives, along one direction each of displacements, speeds and states of the load, at two states beside this one. Told
-/// is what is wrong by more than a millionth at both: at a kink there is no derivative to be right about. What an
-/// add_derivatives throws is told likewise. Nothing where all are right, and of more than 200 speeds.
-/// \param state with the discrete states of a run
+/// is what is wrong at both by more than a millionth and more than differences leave open, as far from the origin,
+/// where coordinates have few digits left: at a kink there is no derivative to be right about. What an add_derivatives
+/// throws is told likewise. Nothing where all are right, and of more than 200 speeds. \param state with the discrete
+/// states of a run
 std::optional<FalseDerivative> false_derivative(const Model& model, const State& state);
 
 }  // namespace withy

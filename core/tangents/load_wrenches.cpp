@@ -1,7 +1,9 @@
 #include "withy/core/tangents/load_wrenches.hpp"
 
+#include <cmath>
+
 #include "withy/core/deformation/mass_points.hpp"
-#include "withy/core/tangents/refined_difference.hpp"
+#include "withy/core/plugin/refined_difference.hpp"
 
 namespace withy::analysis {
 
@@ -58,6 +60,12 @@ FrameMotion moved(const FrameMotion& m, int part, const Vector3& step) {
   return n;
 }
 
+/// Of the number that moved() adds a step to.
+double size_of(const FrameMotion& m, int part, Eigen::Index axis) {
+  if (part == 0) return 1;  // a rotation's
+  return std::abs((part == 1 ? m.position : part == 2 ? m.angular_velocity : m.velocity)[axis]);
+}
+
 /// Of any other load by differences. \returns whether there are any.
 template <class WrenchesAt>
 bool add_differences(const WrenchesAt& wrenches_at, const std::vector<FrameMotion>& motions,
@@ -74,7 +82,7 @@ bool add_differences(const WrenchesAt& wrenches_at, const std::vector<FrameMotio
               changed[k] = moved(motions[k], part, h * Vector3::Unit(axis));
               return wrenches_at(changed);
             },
-            difference_step);
+            difference_step, size_of(motions[k], part, axis));
         if (slope.isZero(0)) continue;
         depends = true;
         for (Eigen::Index e = 0; e < slope.size(); ++e) derivatives_of(all(e)) += slope(e) * change;

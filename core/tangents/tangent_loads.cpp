@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <functional>
 
+#include "withy/core/plugin/refined_difference.hpp"
 #include "withy/core/tangents/continuous_tangents.hpp"
+#include "withy/core/tangents/displacements.hpp"
 #include "withy/core/tangents/load_derivatives.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
-#include "withy/core/tangents/refined_difference.hpp"
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
 namespace withy {
@@ -83,21 +84,20 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, const Eigen
                {efforts.data(), layout.speeds}, scratch);
       return efforts;
     };
+    const auto slope = [&](auto&& move) -> Eigen::VectorXd {
+      return refined_difference(
+          [&](double h) {
+            std::vector<double> moved(y.begin(), y.end());
+            move(moved, h);
+            return at(moved);
+          },
+          difference_step, greatest_moved(y, move));
+    };
     for (Eigen::Index j = 0; j < n; ++j) {
-      by_position.col(j) += refined_difference(
-          [&](double h) {
-            std::vector<double> moved(y.begin(), y.end());
-            displace(moved, h * Eigen::VectorXd::Unit(n, j));
-            return at(moved);
-          },
-          difference_step);
-      by_speed.col(j) += refined_difference(
-          [&](double h) {
-            std::vector<double> moved(y.begin(), y.end());
-            moved[layout.positions + static_cast<std::size_t>(j)] += h;
-            return at(moved);
-          },
-          difference_step);
+      by_position.col(j) +=
+          slope([&](std::span<double> moved, double h) { displace(moved, h * Eigen::VectorXd::Unit(n, j)); });
+      by_speed.col(j) +=
+          slope([&](std::span<double> moved, double h) { moved[layout.positions + static_cast<std::size_t>(j)] += h; });
     }
     note_terms();
     if (by_position != position_before || by_speed != speed_before) tangents.differenced.push_back(node.name);

@@ -59,6 +59,18 @@ TEST(Compare, LeavesOutOfItsDefaultsWhatCannotTreatTheScene) {
   EXPECT_EQ(withy(folder, asked).status, 2) << "what is asked for by name is no default";
 }
 
+/// A folder has no `/` in its name: both values would be "name=a_b".
+TEST(Compare, KeepsEachValueInAFolderOfItsOwn) {
+  const Folder folder;
+  const Finished f = compare(folder, {"--formulations", "quadratic", "--over", "name=a/b,a_b", "--out", "c"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const auto set = [&](const std::string& run) {
+    return json::parse(folder.read("c/" + run + "/quadratic/run.json")).at("set").back();
+  };
+  EXPECT_EQ(set("name=a_b"), "name=a/b");
+  EXPECT_EQ(set("name=a_b_2"), "name=a_b");
+}
+
 TEST(Compare, TableSaysWhyARunStopped) {
   const Folder folder;
   const Finished f = compare(folder, {"--formulations", "inconsistent,quadratic", "--json"});

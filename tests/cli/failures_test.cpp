@@ -92,6 +92,18 @@ TEST(Failures, NoCommandReplacesWhatItReadsNorAFileThatNobodyNamed) {
   EXPECT_EQ(withy(folder, {"export", "double-pendulum.yaml"}).status, 2);
   EXPECT_EQ(withy(folder, {"import", "double-pendulum.urdf", "--out", "double-pendulum.urdf", "--force"}).status, 2);
   EXPECT_EQ(folder.read("double-pendulum.urdf"), original);
+  // Beside a name that was given a surface that import has written is made anew, and no other file.
+  const std::vector<std::string> mesh = {
+      "import", "scenes/meshes/cantilever", "--root", "ROOT", "--station", "85", "--modes", "1", "--out", "b.SID_FEM"};
+  folder.write("b.vtk", "mine");
+  const Finished foreign = withy(folder, mesh);
+  EXPECT_EQ(foreign.status, 2);
+  EXPECT_THAT(foreign.err, HasSubstr("b.vtk is there already"));
+  EXPECT_EQ(folder.read("b.vtk"), "mine");
+  EXPECT_FALSE(fs::exists(folder.path() / "b.SID_FEM"));
+  fs::remove(folder.path() / "b.vtk");
+  EXPECT_EQ(withy(folder, mesh).status, 0);
+  EXPECT_EQ(withy(folder, mesh).status, 0);
   // A folder is said to be one, and a pipe is written.
   const Finished into = withy(folder, {"export", "s.yaml", "--out", "scenes"});
   EXPECT_EQ(into.status, 2);

@@ -211,6 +211,25 @@ TEST(Help, WhatIsMissingIsSaidWithItsMeaning) {
   EXPECT_THAT(withy(folder, {}).err, HasSubstr("which command? withy knows new, check, run"));
 }
 
+TEST(Help, WhatMayBeLeftOutOrRepeatedIsSaidInTheManualAsInTheHelp) {
+  const Folder folder;
+  const std::string manual = withy(folder, {"manual"}).out;
+  for (const char* usage :
+       {"\\fBwithy new\\fR \\fIKIND\\fR [\\fIFILE\\fR] [\\fIoptions\\fR]",
+        "\\fBwithy plugins\\fR [\\fINAME\\fR] [\\fIoptions\\fR]",
+        "\\fBwithy report\\fR \\fIRUN\\fR... [\\fIoptions\\fR]", "\\fBwithy check\\fR \\fISCENE\\fR [\\fIoptions\\fR]"})
+    EXPECT_NE(manual.find(usage), std::string::npos) << usage;
+}
+
+/// The store is given by its place or by name, and either alone does.
+TEST(Help, WhatIsNeededByItsPlaceOrByNameIsNeededOnce) {
+  const Folder folder;
+  const std::string help = withy(folder, {"sweep", "status", "--help"}).out;
+  EXPECT_THAT(help, HasSubstr("STORE STORE REQUIRED"));
+  EXPECT_EQ(help.find("REQUIRED"), help.rfind("REQUIRED")) << help;
+  EXPECT_THAT(withy(folder, {"sweep", "status"}).err, HasSubstr("STORE is missing"));
+}
+
 TEST_P(HelpOf, NamesTheOptionsThatCompletionAndManualName) {
   const Folder folder;
   std::string manual;

@@ -305,7 +305,7 @@ TEST(Run, ResultsNameArmColumnsWithUnits) {
               testing::ElementsAre("t[s]", "shoulder[rad]", "elbow[rad]", "link1.bending_y.1[1]",
                                    "link1.bending_y.2[1]", "link2.bending_y.1[1]", "link2.bending_y.2[1]"));
   for (const std::string column :
-       {"shoulder.rate[rad/s]", "link2.bending_y.2.rate[1]", "link1.tip.deflection_y[m]", "link2.tip.x[m]"}) {
+       {"shoulder.rate[rad/s]", "link2.bending_y.2.rate[1/s]", "link1.tip.deflection_y[m]", "link2.tip.x[m]"}) {
     EXPECT_THAT(head, testing::Contains(column));
   }
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <stdexcept>
 
@@ -243,6 +244,18 @@ const Fault faults[] = {
      {"plot", "runs", "shoulder", "--out", "p.jpg"},
      2,
      {"got the file 'p.jpg' for a picture; need a name that ends in .svg or .png"}},
+    {"place_that_is_no_number",
+     "",
+     "",
+     {"plot", "runs", "shoulder", "--over", "nan"},
+     2,
+     {"--over: got \"nan\"; need a finite number"}},
+    {"value_within_a_list",
+     "",
+     "",
+     {"check", "s.yaml", "--set", "bodies.hub.inertia.2=5"},
+     2,
+     {"--set 'bodies.hub.inertia.2=5': /bodies/hub/inertia: no distribution of mass"}},
     {"value_without_a_path", "", "", {"run", "s.yaml", "--set", "time.end"}, 2, {"need path=value, as time.end=2"}},
     {"value_of_nobody", "", "", {"run", "s.yaml", "--set", "bodies.bom.length=3"}, 2, {"did you mean 'boom'?"}},
     {"formulation_misspelt", "", "", {"run", "s.yaml", "--formulation", "exat"}, 2, {"did you mean 'exact'?"}},
@@ -350,6 +363,34 @@ TEST(FaultsOfPeople, TheSoundSceneIsSound) {
   const Folder folder;
   folder.write("s.yaml", sound_scene);
   EXPECT_THAT(withy(folder, {"check", "s.yaml", "--strict"}).out, testing::HasSubstr("nothing is implausible"));
+}
+
+/// What `--set` says is not in the file, and is named as itself.
+TEST(FaultsOfPeople, RemarksOnWhatIsSetNameIt) {
+  const Folder folder;
+  folder.write("s.yaml", sound_scene);
+  const std::string set = "events.e={hinge: shoulder, value: 90}", origin = "--set '" + set + "'";
+  EXPECT_THAT(withy(folder, {"check", "s.yaml", "--set", set}).out,
+              testing::StartsWith(origin + ": /events/e/value: an angle of 90 rad"));
+  const nlohmann::json remark =
+      nlohmann::json::parse(withy(folder, {"check", "s.yaml", "--set", set, "--json"}).out).at("remarks").at(0);
+  EXPECT_TRUE(remark.at("line").is_null() && remark.at("column").is_null()) << remark;
+  EXPECT_EQ(remark.at("origin"), origin);
+}
+
+/// Names that are offered can be asked for: sections are of beams, and behind their @ stands a place.
+TEST(FaultsOfPeople, NamesOfOutputsThatAreOfferedAreThere) {
+  const Folder folder;
+  const auto said = [&](const std::string& name) {
+    const Finished f = withy(folder, {"run", "scenes/two-link-slew.yaml", "--output", name});
+    EXPECT_EQ(f.status, 2) << f.out;
+    return f.err;
+  };
+  EXPECT_THAT(said("link1.segment"), testing::Not(testing::HasSubstr("hub.section")));
+  for (const char* place : {"300mm", "", "tip"})
+    EXPECT_THAT(said(std::string("link1.section@") + place),
+                testing::HasSubstr("need a number, in m, without its unit, as link1.section@0.3"))
+        << place;
 }
 
 }  // namespace

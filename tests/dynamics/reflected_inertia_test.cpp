@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "random_case.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/core/simulation/simulate.hpp"
 
 namespace withy::test {
@@ -44,6 +45,18 @@ TEST_P(ReflectedInertia, IsFeltByItsRateAlone) {
   EXPECT_NEAR(seen->energies().kinetic, 0.5 * (2 * 0.09 + 0.5 * 1.21 + 3 * 0.64), 1e-14);
   EXPECT_NEAR(seen->energies().angular_momentum[2], 2 * 0.3 + 0.5 * 1.1, 1e-14) << "that of the bodies";
   EXPECT_NEAR(c.equations->energies(s.y).kinetic, seen->energies().kinetic, 1e-14);
+}
+
+/// T as before is the `energy` of all; that of a body is its own.
+TEST_P(ReflectedInertia, IsPartOfTheEnergyOfAll) {
+  const Case c(disc_and_arm("outputs: {all: {type: energy}, arm: {type: energy, of: arm}}\n"), GetParam());
+  State s = c.state;
+  s.y[2] = 0.3, s.y[3] = -0.8;
+  SensorReader reader(c.scene.outputs, *c.equations);
+  std::vector<double> values(reader.columns().size());
+  ASSERT_TRUE(reader.read(s, values));
+  EXPECT_NEAR(values[0], 0.5 * (2 * 0.09 + 0.5 * 1.21 + 3 * 0.64), 1e-14);
+  EXPECT_NEAR(values[3], 0.5 * 0.5 * 1.21, 1e-14);
 }
 
 /// What drives the hinge moves the rotor as well, and its work is the energy of both.

@@ -50,8 +50,11 @@ TEST(HostedEquations, integrated_by_a_host_are_the_simulation) {
   std::vector<double> y = equations.y0();
   for (int k = 0; k < 1000; ++k) rk4(equations, 0.0002 * k, 0.0002, y);
   simulation.step(0.2);
-  for (std::size_t i = 0; i < y.size(); ++i)
-    EXPECT_NEAR(y[i], simulation.output(equations.states()[i].name), 3e-8) << equations.states()[i].name;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const host::Port& state = equations.states()[i];
+    EXPECT_NEAR(y[i], simulation.output(state.name), 3e-8) << state.name;
+    EXPECT_EQ(state.unit, simulation.outputs()[simulation.output_index(state.name)].unit) << state.name;
+  }
 }
 
 TEST(HostedEquations, have_an_exact_jacobian) {

@@ -229,6 +229,19 @@ TEST(HingeRelay, without_hysteresis_is_refused) {
               HasSubstr("not below 'on'"));
 }
 
+/// A hinge's column by its name is what `hinge` and `of` name: an event that does nothing is looked for beside the run.
+TEST(Events, of_a_column_of_a_hinge_are_those_of_the_hinge) {
+  const auto of = [](const std::string& watched) {
+    test::LoadedScene s(turntable + "initial: {hinges: {axle: {rate: [1.5]}}}\nevents: {passed: {" + watched + "}}\n");
+    s.run();
+    EXPECT_EQ(s.scene.events.size(), 1U) << watched;
+    EXPECT_EQ(s.summary.events.size(), 1U) << watched;
+    return s.summary.events.empty() ? 0.0 : s.summary.events[0].time;
+  };
+  EXPECT_NEAR(of("signal: axle, value: 0.3"), 0.2, 1e-9);
+  EXPECT_EQ(of("signal: axle, value: 0.3"), of("hinge: axle, value: 0.3"));
+}
+
 // A falling weight passes x = −½ g t²: known to the accuracy of the dense output, and known exactly where it stops.
 TEST(Events, are_found_where_they_are_and_do_not_change_the_run) {
   const std::string falling = R"(format: withy/1

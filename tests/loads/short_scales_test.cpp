@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <string>
 
-#include "withy/core/tangents/refined_difference.hpp"
+#include "withy/core/plugin/refined_difference.hpp"
 #include "withy/core/tangents/tangent_dynamics.hpp"
 #include "withy/tests/loads/scene_run.hpp"
 
@@ -49,6 +51,23 @@ TEST(ShortScales, FormulasOfSignalsOfAnyLengthHaveTheirSlope) {
   }
 }
 
+/// A body on a slide or a turn far out, on a spring that is slack there, by a formula: k = 10 at any distance.
+TEST(FarAway, SpringsHaveTheirStiffness) {
+  const auto stiffness = [](const std::string& position, const std::string& law) {
+    const LoadedScene s(
+        "format: withy/1\ntime: {end: 1}\nbodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+        "hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}\n" +
+        fmt::format("initial: {{hinges: {{h: {{position: [{}]}}}}}}\n"
+                    "loads: {{stay: {{type: expression, hinge: h, value: \"{}\"}}}}\n",
+                    position, law));
+    return tangents_of(s).by_position(0, 0);
+  };
+  for (const char* place : {"1000", "3e7", "4.5e7", "1e8", "3.844e8", "1e9", "1e10", "1e12"})
+    EXPECT_NEAR(stiffness(place, fmt::format("-10 * (h - {})", place)), 10, 1e-10) << place;
+  // What rounds inside has stairs of 2 µrad there.
+  EXPECT_NEAR(stiffness("0.001", "-10 * ((h + 1e10) - 1e10)"), 10, 0.05);
+}
+
 TEST(RefinedDifference, HasTheNumbersOfItsFirstStepWhereAShorterOneGivesTheSame) {
   const auto f = [](double x) { return Number(std::sin(1 + x)); };
   EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, 1e-3)(0));
@@ -57,6 +76,27 @@ TEST(RefinedDifference, HasTheNumbersOfItsFirstStepWhereAShorterOneGivesTheSame)
 TEST(RefinedDifference, FindsTheSlopeBesideAKinkAndThatOfAShortScale) {
   EXPECT_NEAR(refined_difference([](double x) { return Number(std::abs(x + 1e-6)); }, 1e-3)(0), 1, 1e-9);
   EXPECT_NEAR(refined_difference([](double x) { return Number(std::tanh(x / 1e-6)); }, 1e-3)(0), 1e6, 1e-2);
+}
+
+TEST(RefinedDifference, DoesNotBelieveWhatStairsOfRoundingHaveBetweenThem) {
+  for (const double far : {1e9, 1e10, 1e11}) {
+    const double tread = far * 2.3e-16;
+    const auto alone = [&](double x) { return Number(-10 * ((x + 0.3e-3 + far) - far)); };
+    EXPECT_NEAR(refined_difference(alone, 1e-3)(0), -10, 20 * tread / 1e-3) << far;
+    const auto beside = [&](double x) { return Number(alone(x)(0) - 0.5 * x); };
+    EXPECT_NEAR(refined_difference(beside, 1e-3)(0), -10.5, 20 * tread / 1e-3) << far;
+    EXPECT_EQ(refined_difference([&](double x) { return Number(-10 * ((far + x) - far)); }, 1e-3, far)(0), -10)
+        << "a place that is known to be far";
+  }
+}
+
+TEST(RefinedDifference, FindsNoSlopeInADeadZoneBehindALimitAndBesideAJump) {
+  for (const double w : {3e-3, 1e-4, 1e-6, 1e-8}) {
+    const auto dead = [&](double x) { return Number(x - std::clamp(x, -w, w)); };
+    EXPECT_EQ(refined_difference(dead, 1e-3)(0), 0) << w;
+    EXPECT_EQ(refined_difference([&](double x) { return Number(std::min(x, -w)); }, 1e-3)(0), 0) << w;
+    EXPECT_EQ(refined_difference([&](double x) { return Number(x > w ? 1.0 : 0.0); }, 1e-3)(0), 0) << w;
+  }
 }
 
 TEST(RefinedDifference, TellsAJumpAsItsFirstStepHasIt) {

@@ -1,6 +1,7 @@
 // What rods and families of functions say is checked before anything is computed with it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -112,6 +113,46 @@ TEST(ValidateFields, names_rods_whose_fields_are_no_integrals_or_not_those_of_th
   EXPECT_EQ(fault([](Bent& r) { r.mass_per_length = 200; }), "its mass is 200 kg, that of the body's particles 2 kg");
 }
 
+/// A rod whose curvature steps from 1 to 3 at a place.
+class Kinked final : public withy::Rod {
+ public:
+  explicit Kinked(double at) : at_(at) {}
+  double factor = 1;
+  Eigen::Index modes() const override { return 1; }
+  double length() const override { return 1; }
+  double wave_number() const override { return 2; }
+  withy::RodSection section(double x) const override {
+    const double beyond = std::max(x - at_, 0.0);
+    const withy::Matrix3X none = withy::Matrix3X::Zero(3, 1);
+    withy::RodSection s{none, none, none, 2, withy::Matrix3::Zero()};
+    s.strain(2, 0) = factor * (beyond > 0 ? 3 : 1);
+    s.rotation(2, 0) = x + 2 * beyond;
+    s.deflection(1, 0) = x * x / 2 + beyond * beyond;
+    return s;
+  }
+  ModalShape shape() const {
+    ModalShape s = bent_shape();
+    for (withy::Particle& p : s.particles) {
+      const withy::RodSection here = section(p.at.X.x());
+      p.at.phi = here.deflection;
+      p.at.psi = here.rotation;
+    }
+    return s;
+  }
+
+ private:
+  double at_;
+};
+
+TEST(ValidateFields, finds_nothing_in_rods_with_a_step_of_strain_where_they_are_looked_at) {
+  for (const double at : {0.4142136, 0.4142136 - 1e-12, 0.4142136 + 1e-12, 0.41421, 0.41422, 0.4, 0.1371742}) {
+    Kinked rod(at);
+    EXPECT_EQ(find_fault(rod, rod.shape()), "") << at;
+    rod.factor = 2;
+    EXPECT_NE(find_fault(rod, rod.shape()), "") << at << ": seen at the other places";
+  }
+}
+
 /// sin kx and its derivatives times factors, in the place of some where it fails.
 class Waves final : public withy::ShapeFunctions {
  public:
@@ -155,6 +196,33 @@ TEST(ValidateFields, names_functions_that_are_not_as_many_or_whose_derivatives_a
   const std::string curvature = fault([](Waves& w) { w.curvature = 2; });
   EXPECT_TRUE(begins(curvature, "function 1 has the curvature -0.541")) << curvature;
   EXPECT_EQ(fault([](Waves& w) { w.curvature = 2; }, Strain::torsion), "") << "twist has none";
+}
+
+/// φ = x²/2 + 1000 b³, b the way behind a place where the curvature, 1 + 6000 b, has a kink.
+class KinkedCurvature final : public withy::ShapeFunctions {
+ public:
+  explicit KinkedCurvature(double at) : at_(at) {}
+  double factor = 1;
+  std::size_t count() const override { return 1; }
+  double wave_number() const override { return 2; }
+  void evaluate(double x, std::span<double> phi, std::span<double> slope, std::span<double> curvature) const override {
+    const double b = std::max(x - at_, 0.0), steep = 1e3;
+    phi[0] = x * x / 2 + steep * b * b * b;
+    slope[0] = x + 3 * steep * b * b;
+    curvature[0] = factor * (1 + 6 * steep * b);
+  }
+
+ private:
+  double at_;
+};
+
+TEST(ValidateFields, finds_nothing_in_functions_with_a_kink_where_they_are_looked_at) {
+  for (const double at : {0.4142136, 0.4142136 - 1e-12, 0.4142136 + 1e-12, 0.41421, 0.41422, 0.4, 0.6830127}) {
+    KinkedCurvature functions(at);
+    EXPECT_EQ(find_fault(functions, {.length = 1}, 1), "") << at;
+    functions.factor = 1.01;
+    EXPECT_NE(find_fault(functions, {.length = 1}, 1), "") << at << ": seen at the other places";
+  }
 }
 
 }  // namespace

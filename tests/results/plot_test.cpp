@@ -2,12 +2,21 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <limits>
+#include <set>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "withy/results/output_file.hpp"
 #include "withy/results/plotted_runs.hpp"
 #include "withy/results/results_error.hpp"
+#include "withy/results/svg_parts.hpp"
 #include "withy/results/svg_plot.hpp"
 #include "withy/results/table_picture.hpp"
+#include "withy/results/terminal_plot.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/tests/results/scratch.hpp"
 
 namespace withy {
@@ -95,6 +104,66 @@ TEST(PlottedRuns, WithoutNamesSayHowManyOfTheColumnsAreDrawn) {
   const DrawnRuns named = PlottedRuns({(folder / "chain").string(), "h0", "h1"}).drawn({});
   EXPECT_EQ(named.count(), "2 columns");
   EXPECT_EQ(named.remarks(), "");
+}
+
+TEST(PlottedRuns, ReplaceAPictureOfTheirOwnAndNoOtherThatNobodyNamed) {
+  const test::Scratch folder;
+  folder.write("run/results.csv", "t[s],s[m]\n0,1\n1,2\n");
+  const PlottedRuns runs({(folder / "run").string()});
+  const std::filesystem::path own = folder / "run/plot.svg";
+  EXPECT_EQ(runs.picture("", false), own);
+  draw_plot(runs.drawn({}).picture, own);
+  EXPECT_THAT(folder.read("run/plot.svg"), HasSubstr("s [m]"));
+  EXPECT_EQ(runs.picture("", false), own);
+  write_file(own, "mine");
+  EXPECT_THROW(runs.picture("", false), study::InputError);
+  EXPECT_EQ(runs.picture("", true), own);
+  EXPECT_EQ(runs.picture(own.string(), false), own) << "it was named";
+  EXPECT_THROW(runs.picture((folder / "run/results.csv").string(), true), study::InputError);
+}
+
+TEST(PlottedRuns, OverPlacesNeedAFiniteOneForEachColumn) {
+  const test::Scratch folder;
+  folder.write("run/results.csv", "t[s],a[m],b[m]\n0,1,2\n1,2,3\n");
+  const PlottedRuns runs({(folder / "run").string(), "a", "b"});
+  EXPECT_EQ(runs.drawn({0, 1}).picture.panels.size(), 1U);
+  EXPECT_THROW(static_cast<void>(runs.drawn({0})), study::InputError);
+  for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(static_cast<void>(runs.drawn({0, wrong})), study::InputError);
+}
+
+/// Two curves a run, one letter a run; the axis is one of places.
+TEST(TerminalPlot, CurvesOfOnePenHaveTheLetterOfTheLegend) {
+  Panel panel{"x [m]", "mz [N m]", {0, 3}, {}};
+  panel.free_x = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    panel.curves.push_back({{0, 7}, {double(i), double(i)}});
+    panel.curves.back().pen = i / 2;
+  }
+  const std::string text = terminal_plot({"one", "two"}, {panel});
+  EXPECT_THAT(text, HasSubstr("a one\nb two\n"));
+  EXPECT_THAT(text, HasSubstr("|aaaa"));
+  EXPECT_THAT(text, HasSubstr("|bbbb"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("cccc")));
+  EXPECT_THAT(text, HasSubstr("7 m\n"));
+}
+
+TEST(SvgPlot, NoTwoPensAreAlikeAndTheLegendShowsTheirDashesWhole) {
+  constexpr std::size_t many = 100;
+  std::set<std::pair<std::string, std::string>> seen;
+  for (std::size_t i = 0; i < many; ++i) seen.emplace(pen(i).colour, pen(i).dashes);
+  EXPECT_EQ(seen.size(), many);
+  const SvgLegend legend = svg_legend(std::vector<std::string>(many, "run"), 0, 860, 0);
+  std::istringstream lines(legend.text);
+  std::size_t samples = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("<path")) continue;
+    std::istringstream dashes(pen(samples++).dashes);
+    double period = 0;
+    for (double length = 0; dashes >> length;) period += length;
+    EXPECT_GE(std::stod(line.substr(line.find(" h") + 2)), period) << line;
+  }
+  EXPECT_EQ(samples, many);
 }
 
 /// Names of scenes have up to 64 characters; 36 of them are as long as a panel with what is below it is high.

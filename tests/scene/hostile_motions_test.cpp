@@ -1,6 +1,7 @@
 // Hinges, motions, formulations and strain kinematics of plugins that are not what they say they are.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -58,6 +59,47 @@ class OnSine final : public Hinge {
 
  private:
   std::string fault_;
+};
+
+/// A bead on a circle of a radius, or on a line that bends at a place into a parabola, or on y = x^1.5, x > 0, from
+/// x = 5 mm on. H may be too large.
+class Bead final : public Hinge {
+ public:
+  Bead(std::string line, double size, double factor) : line_(std::move(line)), size_(size), factor_(factor) {}
+  std::size_t coordinates() const override { return 1; }
+  std::size_t speeds() const override { return 1; }
+  void reference(std::span<double> x) const noexcept override { x[0] = line_ == "root" ? size_ : 0; }
+  void motion(std::span<const double> x, std::span<const double> rates, HingeMotion& out) const noexcept override {
+    const double u2 = rates[0] * rates[0], beyond = std::max(x[0] - size_, 0.0);
+    out.H.setZero(6, 1);
+    out.bias.setZero();
+    if (line_ == "circle") {
+      const double s = std::sin(x[0] / size_), c = std::cos(x[0] / size_);
+      out.pose.p = size_ * Vector3(s, 1 - c, 0);
+      out.H.bottomRows<3>() = Vector3(c, s, 0);
+      out.bias.tail<3>() = u2 / size_ * Vector3(-s, c, 0);
+    } else if (line_ == "bend") {
+      out.pose.p = Vector3(x[0], beyond * beyond / 2, 0);
+      out.H.bottomRows<3>() = Vector3(1, beyond, 0);
+      out.bias[4] = beyond > 0 ? u2 : 0;
+    } else {
+      const double root = std::sqrt(x[0]);
+      out.pose.p = Vector3(x[0], x[0] * root, 0);
+      out.H.bottomRows<3>() = Vector3(1, 1.5 * root, 0);
+      out.bias[4] = 0.75 / root * u2;
+    }
+    out.H *= factor_, out.bias *= factor_;
+  }
+  void derivatives(std::span<const double>, std::span<const double> rates,
+                   std::span<double> x_dot) const noexcept override {
+    x_dot[0] = rates[0];
+  }
+  void normalize(std::span<double>) const noexcept override {}
+  std::optional<HingeKernel> kernel() const override { return {}; }
+
+ private:
+  std::string line_;
+  double size_, factor_;
 };
 
 /// sin 3t with one mistake.
@@ -129,6 +171,14 @@ class HostileMotions : public SceneTest {
     Enrollment e;
     e.add(faulty_plugin<Hinge, OnSine>("sine"));
     e.add(faulty_plugin<Motion, Wave>("wave"));
+    Plugin<Hinge> bead;
+    bead.id = "bead";
+    bead.parameters = {text("line", "that it is on"), number("size", "m", "of the line"),
+                       number("factor", "1", "of H and the bias").otherwise(1)};
+    bead.make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Hinge> {
+      return std::make_unique<Bead>(p.text_at("line"), p.number_at("size"), p.number_at("factor"));
+    };
+    e.add(std::move(bead));
     e.add(faulty_plugin<Formulation, Mute>("mute"));
     const auto add_kinematics = [&](const char* id, ParameterSpec share, auto make) {
       Plugin<StrainKinematics> plugin;
@@ -185,6 +235,34 @@ TEST_F(HostileMotions, WhoseHingesGiveDerivativesThatAreNoneAreReported) {
   EXPECT_EQ(hinge("width-of-derivative"), made + "the derivative of H along rate 1 has 2 columns; need one a rate, 1");
   EXPECT_THAT(hinge("derivative-of-H"), testing::StartsWith(made + "the derivative of H along rate 1, column 1, is "));
   EXPECT_THAT(hinge("derivative-of-bias"), testing::StartsWith(made + "the derivative of the bias along rate 1 is "));
+}
+
+TEST_F(HostileMotions, WhoseHingesAreSmallKinkedOrAtTheEndOfWhereTheyCanBeAreRightAndTheirFaultsAreSeen) {
+  const auto bead = [&](const std::string& line, const std::string& size, const std::string& factor) {
+    return problems(with("bead, line: " + line + ", size: " + size + ", factor: " + factor), registry);
+  };
+  const auto expect_told = [&](const std::string& line, const std::string& size) {
+    EXPECT_EQ(bead(line, size, "1"), "") << line << " of " << size;
+    EXPECT_THAT(bead(line, size, "1.01"), testing::HasSubstr("a motion that cannot be: column 1 of H is (0 0 0 "))
+        << line << " of " << size;
+  };
+  for (const char* radius : {"1", "1e-2", "1e-3", "1e-4", "1e-5", "1e-6"}) expect_told("circle", radius);
+  for (const char* place : {"0.0137", "0.0931", "0.01", "0.1", "0.05", "0.0137000001", "0.0136999999"})
+    expect_told("bend", place);
+  for (const char* from : {"1", "0.005", "1e-4"}) expect_told("root", from);
+  // Of what turns in less than the shortest step nobody can tell.
+  EXPECT_EQ(bead("circle", "1e-12", "1"), "");
+}
+
+// Seconds since 1980, or since the beginning: doubles tell times that are 1e-7 s apart, or 1e-4 s.
+TEST_F(HostileMotions, WhoseMotionsAreFormulasOfAFarTimeAreRight) {
+  for (const char* law :
+       {"type: expression, value: '0.1 * sin(25.2 * (t + 1012587058.1))'", "type: expression, value: (1e12 + t) - 1e12",
+        "type: sine, amplitude: 1, period: 1, phase: 1.0e11", "type: expression, value: '0.1 * sin(3 * (t + 2.1e13))'",
+        "type: expression, value: 'max(t - 0.4142136, 0)^2'"}) {
+    SCOPED_TRACE(law);
+    EXPECT_EQ(problems(with_sine("nothing") + "motions:\n  m: {hinge: h, " + law + "}\n", registry), "");
+  }
 }
 
 // sin 3t, its rate and its acceleration, or others.

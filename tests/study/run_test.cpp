@@ -8,9 +8,11 @@
 #include <optional>
 #include <tuple>
 
+#include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/step_watch.hpp"
 #include "withy/study/comparison.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/own_instants.hpp"
 #include "withy/tests/study/plugins.hpp"
 #include "withy/tests/study/scenes.hpp"
 
@@ -436,6 +438,29 @@ TEST(StudyRun, TheSymmetricTruncationConservesItsOwnEnergy) {
   const CertifiedRun r = run_of("two-link-slew", {}, "symmetric");
   EXPECT_LT(r.certificate.energy_drift, 1e-4);
   EXPECT_GT(r.certificate.untruncated_drift, 10 * r.certificate.energy_drift);
+}
+
+/// What acts is told apart from what is only dealt with as if it did, and that from what is looked for beside the run.
+TEST(StudyRun, WhatKeepsModelsFromBeingComparedIsSaidAsItIs) {
+  const auto said = [](const std::string& events) {
+    SceneValues values = short_slew();
+    values.set_text("events=" + events);
+    const Prepared prepared = prepare(std::move(values), plugins());
+    return has_switches(prepared.model()) ? own_instants(prepared.model()) : "";
+  };
+  const std::string leave_out = ", and is dealt with as those that act: leave it out (--set events.e=null)";
+  EXPECT_EQ(said("{e: {at: 0.1}}"), "event 'e' does nothing to the motion but is at a time" + leave_out);
+  EXPECT_EQ(said("{e: {at: 0.1, stop: true}}"), "event 'e' does nothing to the motion but is at a time" + leave_out);
+  EXPECT_EQ(said("{e: {hinge: shoulder, value: 1, delay: 0.1}}"),
+            "event 'e' does nothing to the motion but waits" + leave_out);
+  EXPECT_EQ(said("{look: {at: 0.1}, e: {at: 0.2, do: {lock: shoulder}}}"), "event 'e' acts");
+  EXPECT_EQ(said("{e: {hinge: shoulder, value: 1, do: {lock: shoulder}}}"),
+            "event 'e' acts, at times of its own in every model");
+  EXPECT_EQ(said("{e: {hinge: shoulder, value: 1}}"), "");
+  EXPECT_EQ(said("{e: {signal: shoulder.rate, value: 0.1}}"), "") << "the column of a hinge is what `hinge` names";
+  SceneValues chosen = short_slew();
+  chosen.choose_formulation("auto", "the test").set_text("events={e: {at: 0.1}}");
+  EXPECT_THROW(static_cast<void>(prepare(chosen, plugins())), InputError);
 }
 
 }  // namespace

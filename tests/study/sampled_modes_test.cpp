@@ -152,6 +152,16 @@ TEST(SampledModes, OfSeveralPeriodsAreThoseOfTheCommonOne) {
   expect_eigenvalues(multipliers(at), second * first, 1e-12);
 }
 
+/// Two periods that differ in their seventh digit are told apart where they have no common multiple.
+TEST(SampledModes, WithoutACommonPeriodNamePeriodsThatDiffer) {
+  try {
+    modes_of(digital_table, {"loads.slow={type: pid, hinge: axle, proportional: 2, sample: 0.02000001}"});
+    ADD_FAILURE() << "found";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("0.02 s to 0.02000001 s, have no common multiple"));
+  }
+}
+
 /// A multiplier tells frequencies up to half the rate of samples. What vibrates faster is known by how it moves between
 /// them: a controller that hardly does anything leaves all as it is without.
 TEST(SampledModes, KnowVibrationsFasterThanTheSamples) {

@@ -61,6 +61,18 @@ TEST(TipLoad, ABodyOnAPinActsAsItsArmLies) {
   }
 }
 
+/// A drive of inertia r behind a gear shares what the pin lets go: with a = J + m c² the tip feels J + m c² as a r/(a +
+/// r) and the mass as m − m² c²/(a + r); without a drive neither, with an endless one the body is welded.
+TEST(TipLoad, ABodyOnAGearedPinIsHeldByItsDrive) {
+  const double a = inertia + mass * arm * arm, first = mass * arm;
+  for (const double r : {0.0, 0.01, 0.2, 300.0}) {
+    const Prepared scene = boom("type: revolute, axis: [0, 0, 1], reflected_inertia: " + std::to_string(r));
+    const double m = mass - first * first / (a + r), s = first * r / (a + r), about = a * r / (a + r);
+    expect_load(family(scene, "bending_y"), m, s / m, about - s * s / m);
+    expect_load(family(scene, "bending_z"), mass, arm, inertia);
+  }
+}
+
 TEST(TipLoad, AHingeThatAMotionDrivesHolds) {
   const Prepared scene = boom("type: revolute, axis: [0, 0, 1]",
                               "motions: {turn: {type: spin-up, hinge: joint, rate: 1, duration: 0.5}}\n");

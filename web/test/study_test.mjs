@@ -309,6 +309,10 @@ async function check_figures(browser, folder, run, troubles) {
     assert.equal(await page.locator('.study-figure').count(), panels.length);
     const drawn = await page.$$eval('.study-figure path', all => all.filter(p => p.getAttribute('d').length > 3).length);
     assert.ok(drawn >= panels.reduce((sum, p) => sum + p.curves.length, 0), `${drawn} curves of ${name}`);
+    // Names are told apart by dashes: a sample of a line shows all of them.
+    const samples = await page.$$eval('.legend path[stroke-dasharray]', all => all.map(p => [p.getTotalLength() * p.ownerSVGElement.getScreenCTM().a, p.getAttribute('stroke-dasharray')]));
+    if (name === 'terms') assert.ok(samples.length > 2, 'a line for each term');
+    for (const [length, dashes] of samples) assert.ok(length >= dashes.split(' ').reduce((sum, d) => sum + +d, 0), `${length} px of ${dashes} on the page of ${name}`);
     await shot(page, `${name}-light`);
     await page.close();
   }

@@ -181,13 +181,17 @@ export function table_of(columns, rows, chosen) {
   return table;
 }
 
+// Half a sample of a line: any of the dashes begins again within the whole.
+const reach = 22;
+
 // Names with their colours and shapes; a click hides what they stand for.
 export function legend(entries, changed) {
   const holder = document.createElement('div');
   holder.className = 'legend';
   for (const entry of entries) {
-    const button = document.createElement('button'), icon = draw('svg', { viewBox: '-7 -7 14 14', width: 14, height: 14 });
-    icon.append(entry.dash != null ? draw('path', { d: 'M-7 0H7', stroke: entry.color, 'stroke-width': 2.5, 'stroke-dasharray': entry.dash }) : draw('path', { d: shapes[entry.shape ?? 0], fill: entry.hollow ? 'none' : entry.color, stroke: entry.color, 'stroke-width': 1.5 }));
+    const line = entry.dash != null, half = line ? reach : 7;
+    const button = document.createElement('button'), icon = draw('svg', { viewBox: `${-half} -7 ${2 * half} 14`, width: 2 * half, height: 14 });
+    icon.append(line ? draw('path', { d: `M${-half} 0H${half}`, stroke: entry.color, 'stroke-width': 2.5, 'stroke-dasharray': entry.dash }) : draw('path', { d: shapes[entry.shape ?? 0], fill: entry.hollow ? 'none' : entry.color, stroke: entry.color, 'stroke-width': 1.5 }));
     button.append(icon, ` ${entry.name}`);
     button.className = 'chip';
     button.setAttribute('aria-pressed', !entry.hidden);
