@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "withy/study/check_loads.hpp"
 #include "withy/study/output_reader.hpp"
 #include "withy/study/walk.hpp"
 
@@ -68,6 +69,7 @@ Comparison compare(const SceneValues& values, Registry& registry, const std::vec
     scenes.push_back(prepare(std::move(chosen), registry));
     check_integrator(scenes.back());
   }
+  check_loads(scenes.front());
   for (Prepared& scene : scenes) {
     ComparedRun run{std::move(scene), {}, {}};
     if (c.runs.empty()) static_cast<void>(measured(c, run));  // and so are bad names

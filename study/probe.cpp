@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/study/check_loads.hpp"
 #include "withy/study/output_reader.hpp"
 #include "withy/study/search_time.hpp"
 
@@ -84,7 +85,9 @@ const char* outcome_name(Probe::Outcome outcome) {
 }
 
 Evaluator::Evaluator(const Prepared& base, Registry& registry, const Outputs& outputs, Control control)
-    : base_(base), registry_(registry), outputs_(outputs), control_(std::move(control)), began_(search_time().now()) {}
+    : base_(base), registry_(registry), outputs_(outputs), control_(std::move(control)), began_(search_time().now()) {
+  check_loads(base);
+}
 
 double Evaluator::spent() const { return search_time().now() - began_; }
 

@@ -59,7 +59,7 @@ struct Allowance {
 /// Makes the models of one scene, runs probes of them and knows what they cost.
 class Evaluator {
  public:
-  /// All must outlive it.
+  /// All must outlive it. \throws SceneError as check_loads
   Evaluator(const Prepared& base, Registry& registry, const Outputs& outputs, Control control);
 
   [[nodiscard]] const Prepared& base() const { return base_; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
+#include "withy/study/check_loads.hpp"
 #include "withy/study/trees_alone.hpp"
 
 namespace withy::study {
@@ -56,6 +57,7 @@ double TermSizes::greatest_peak(std::size_t group) const {
 TermStudy::TermStudy(const Prepared& prepared, Registry& registry)
     : prepared_(prepared), rates_(prepared.equations->size()), work_(prepared.equations->make_work()) {
   refuse_loops(prepared, "'withy terms'");
+  check_loads(prepared);
   for (const char* id : {"ruthless", "inconsistent", "consistent", "quadratic"})
     compiled_.push_back(compile_throughout(prepared, registry, id));
   const State& start = prepared.scene.initial;

@@ -42,7 +42,7 @@ struct TermSizes {
 class TermStudy {
  public:
   /// `prepared` must outlive it. \throws InputError, std::invalid_argument where the model cannot be compiled in the
-  /// formulations that terms are the differences of.
+  /// formulations that terms are the differences of; SceneError as check_loads.
   TermStudy(const Prepared& prepared, Registry& registry);
   /// Adds the terms at an output; none where the equations have no accelerations there.
   void enter(const State& state);

@@ -9,6 +9,7 @@
 
 #include "withy/study/accuracy.hpp"
 #include "withy/study/candidates.hpp"
+#include "withy/study/check_loads.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/output_reader.hpp"
 #include "withy/study/step_limit.hpp"
@@ -82,6 +83,7 @@ TradeStudy::TradeStudy(const Prepared& base, Registry& registry, std::vector<Poi
       options_(std::move(options)),
       outputs_(base.model(), options_.outputs, base.scene.outputs),
       finished_(points_.size()) {
+  check_loads(base);
   for (std::size_t i = 0; i < points_.size(); ++i) look_up(i);
 }
 

@@ -58,7 +58,8 @@ struct TradeOptions {
 
 class TradeStudy {
  public:
-  /// `base` and `registry` must outlive it. \throws InputError where the scene has nothing to measure.
+  /// `base` and `registry` must outlive it. \throws InputError where the scene has nothing to measure; SceneError as
+  /// check_loads.
   TradeStudy(const Prepared& base, Registry& registry, std::vector<Point> points, TradeOptions options);
   ~TradeStudy();
   TradeStudy(const TradeStudy&) = delete;

@@ -32,6 +32,13 @@ class IntegratorError : public PluginError {
 std::unique_ptr<Stepper> start_stepper(const Integrator& integrator, const EquationsOfMotion& equations,
                                        const State& state, const std::string& who = "the integrator");
 
+/// Why a step that is said to be done is none: it did not go on, or went past where it was to end [s]. Times have all
+/// their digits, which differ in the last one where times are added up.
+std::string false_end(double from, double limit, double to);
+
+/// Why a stepper is not where it was sent, or empty where it is, but for quaternions that it has scaled to unit length.
+std::string false_jump(const State& sent, const State& here);
+
 /// Stepper::interpolate. \throws IntegratorError
 void interpolate_step(const Stepper& stepper, double t, std::span<double> y);
 

@@ -202,9 +202,7 @@ void Stepping::check_step(double from, double limit) const {
     throw IntegratorError("does not step: it ends with an outcome that there is not, " +
                           std::to_string(static_cast<int>(outcome)));
   if (outcome != ok || (state().time > from && state().time <= limit)) return;
-  throw IntegratorError("says of a step that it is done, which began at " + std::to_string(from) +
-                        " s, was to end at " + std::to_string(limit) + " s at the latest, and ended at " +
-                        std::to_string(state().time) + " s: no result can be trusted");
+  throw IntegratorError(false_end(from, limit, state().time));
 }
 
 /// Whether step after step gains less than time resolves where it is to come to: none of them is an error, and all
@@ -219,16 +217,7 @@ bool Stepping::crawls(double from, double limit) {
 
 void Stepping::jump_to(const State& state) {
   plugin_call<IntegratorError>("does not go to another state", [&] { stepper_->jump(state); });
-  const State& here = stepper_->state();
-  // A stepper may scale quaternions to unit length.
-  const auto close = [](double a, double b) {
-    constexpr double normalized = 1e-6;
-    return a == b || std::abs(a - b) <= normalized * (1 + std::abs(b)) || (std::isnan(a) && std::isnan(b));
-  };
-  if (here.time == state.time && std::equal(here.y.begin(), here.y.end(), state.y.begin(), state.y.end(), close))
-    return;
-  throw IntegratorError("does not go to another state: it was sent to one at " + std::to_string(state.time) +
-                        " s and is in another, at " + std::to_string(here.time) + " s");
+  if (const std::string why = false_jump(state, stepper_->state()); !why.empty()) throw IntegratorError(why);
 }
 
 /// Steps to a time; false where stepping ends before. Not watching: a step taken back is made again to end at a zero,

@@ -85,6 +85,7 @@ struct TangentDynamics::Builder {
         set(s.R, Matrix3(m.pose.R * skew<double>(Vector3(column.template head<3>()))));
         set(s.p, Vector3(m.pose.R * column.template tail<3>()));
         HingeMotion derivative;
+        derivative.H.resize(6, static_cast<Eigen::Index>(n));
         hinge.motion_derivative(x, rates, k, derivative);
         set(s.H, derivative.H);
         set(s.bias, derivative.bias);

@@ -121,6 +121,27 @@ class Stubborn final : public WrappedSteps {
   void jump(const State& /*state*/) override {}
 };
 
+/// Ends at the next number after the one that it is given, as sums of steps do.
+class Rounding final : public OwnState {
+ public:
+  using OwnState::OwnState;
+  StepResult step(double t_limit) override {
+    state_.time = std::nextafter(t_limit, 1e9);
+    return {};
+  }
+};
+
+/// Goes where it is sent but for its first rate.
+class Careless final : public WrappedSteps {
+ public:
+  using WrappedSteps::WrappedSteps;
+  void jump(const State& state) override {
+    State other = state;
+    other.y[1] += 0.25;
+    WrappedSteps::jump(other);
+  }
+};
+
 /// A pendulum at an angle, run by these steps to 1 s.
 /// \param rest of its scene
 template <class Steps>
@@ -175,6 +196,11 @@ std::string start_of(const std::string& fault) {
 TEST(WrongSteps, ThatStandStillEndARun) {
   EXPECT_THAT(message_of_a_run<Standing>(), testing::HasSubstr("says of a step that it is done, which began at 0"));
 }
+TEST(WrongSteps, ThatMissTheLastDigitAreToldWithAllOfThem) {
+  EXPECT_THAT(message_of_a_run<Rounding>(),
+              testing::HasSubstr("was to end at 1 s at the latest, and ended at 1.0000000000000002 s, 2.22e-16 s too "
+                                 "late: no result"));
+}
 TEST(WrongSteps, ThatGoTooFarEndARun) { EXPECT_THAT(message_of_a_run<Passing>(), testing::HasSubstr("was to end at")); }
 
 TEST(WrongSteps, ThatThrowEndARunWithTheirWords) {
@@ -195,6 +221,12 @@ TEST(WrongSteps, ThatDoNotGoWhereAnEventSendsThemEndARun) {
   EXPECT_THAT(
       message_of_a_run<Stubborn>("initial: {hinges: {r: {rate: [1]}}}\nevents: {e: {at: 0.5, do: {lock: r}}}\n"),
       testing::HasSubstr("does not go to another state: it was sent to one at 0.5"));
+}
+
+TEST(WrongSteps, ThatGoElsewhereAreToldByTheNumberThatIsNot) {
+  EXPECT_THAT(
+      message_of_a_run<Careless>("initial: {hinges: {r: {rate: [1]}}}\nevents: {e: {at: 0.5, do: {lock: r}}}\n"),
+      testing::ContainsRegex("sent to one at 0.5 s and is in another, where number 2 of [0-9]+ is 0.25 and not 0"));
 }
 
 TEST(WrongSteps, ThatBlameABodyThatThereIsNotNameNone) {

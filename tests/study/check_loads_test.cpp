@@ -10,8 +10,12 @@
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/load.hpp"
 #include "withy/plugins/host/plugin_host.hpp"
+#include "withy/study/comparison.hpp"
 #include "withy/study/configuration.hpp"
+#include "withy/study/probe.hpp"
 #include "withy/study/run.hpp"
+#include "withy/study/term_study.hpp"
+#include "withy/study/trade.hpp"
 
 namespace withy::study {
 namespace {
@@ -228,6 +232,30 @@ TEST(CheckLoads, FarFromTheOriginAreRightAndTheirFaultsAreSeen) {
     EXPECT_THAT(said_of("sign", true, far), HasSubstr("its effort on 'h.0' changes by 300 with a displacement along"));
     EXPECT_THAT(said_of("forgets", true, far), HasSubstr("its effort on 'h.0' changes by 0 with a displacement along"));
   }
+}
+
+/// Studies of a scene refuse it as a run does, before they run anything.
+TEST(CheckLoads, WithFalseDerivativesAreRefusedByStudiesToo) {
+  const Prepared wrong = slider("loads:\n  l: {type: faulty, fault: sign}\n");
+  const Outputs outputs = Outputs::all(wrong.model());
+  const auto told = [](const auto& study) -> std::string {
+    try {
+      study();
+    } catch (const SceneError& e) {
+      return e.what();
+    }
+    return {};
+  };
+  const std::string says = "load 'l' says that its effort on 'h.0' changes by 300";
+  EXPECT_THAT(told([&] { const Evaluator evaluator(wrong, with_faulty(), outputs, {}); }), HasSubstr(says)) << "advise";
+  EXPECT_THAT(told([&] { const TradeStudy trade(wrong, with_faulty(), {}, {}); }), HasSubstr(says));
+  EXPECT_THAT(told([&] { const TermStudy terms(wrong, with_faulty()); }), HasSubstr(says));
+  EXPECT_THAT(told([&] {
+                static_cast<void>(
+                    compare(wrong.values, with_faulty(), {"ruthless"}, "quadratic",
+                            [](const Prepared&, const auto&) -> RunSummary { throw std::logic_error("it ran"); }));
+              }),
+              HasSubstr(says));
 }
 
 TEST(CheckLoads, WithAKinkWhereTheMotionBeginsAreRight) {

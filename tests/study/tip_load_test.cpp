@@ -61,6 +61,35 @@ TEST(TipLoad, ABodyOnAPinActsAsItsArmLies) {
   }
 }
 
+/// A pin that fills the column of H that it is given, and does not make it.
+class BarePin final : public Hinge {
+ public:
+  std::size_t coordinates() const override { return 1; }
+  std::size_t speeds() const override { return 1; }
+  void reference(std::span<double> x) const noexcept override { x[0] = 0; }
+  void motion(std::span<const double> x, std::span<const double>, HingeMotion& out) const noexcept override {
+    out.pose.R = Eigen::AngleAxisd(x[0], Vector3::UnitZ()).toRotationMatrix();
+    if (out.H.cols() == 1) out.H.col(0) = Vector6::Unit(2);
+    out.bias.setZero();
+  }
+  void derivatives(std::span<const double>, std::span<const double> rates,
+                   std::span<double> x_dot) const noexcept override {
+    x_dot[0] = rates[0];
+  }
+  void normalize(std::span<double>) const noexcept override {}
+  std::optional<HingeKernel> kernel() const override { return {}; }
+};
+
+TEST(TipLoad, AHingeIsGivenTheColumnsThatItFills) {
+  const Prepared scene = boom("type: revolute, axis: [0, 0, 1]");
+  std::vector<HingeNode> hinges = scene.model().hinges();
+  hinges.back().hinge = std::make_shared<BarePin>();
+  const Model bare(scene.model().bodies(), hinges, Vector3::Zero());
+  const auto b = static_cast<std::size_t>(bare.body("boom"));
+  const Matrix6 load = tip_loads(bare, scene.scene.initial)[b];
+  EXPECT_TRUE(load.isApprox(tip_loads(scene.model(), scene.scene.initial)[b], 1e-12));
+}
+
 /// A drive of inertia r behind a gear shares what the pin lets go: with a = J + m c² the tip feels J + m c² as a r/(a +
 /// r) and the mass as m − m² c²/(a + r); without a drive neither, with an endless one the body is welded.
 TEST(TipLoad, ABodyOnAGearedPinIsHeldByItsDrive) {
