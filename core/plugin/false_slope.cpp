@@ -11,11 +11,11 @@ namespace {
 using SlopeFunction = std::function<Eigen::MatrixXd(double)>;
 
 /// Of the size of a slope: far above the error of good differences, far below a factor that is forgotten.
-constexpr double slope_tolerance = 1e-4;
+constexpr double slope_agreement = 1e-4;
 
 /// What a column may be off by from what differences find.
 double allowed_off(const SaidSlopes& said, Eigen::Index column, const Eigen::MatrixXd& found) {
-  return slope_tolerance * std::max(said.sizes[column], found.col(column).norm()) + said.least[column];
+  return slope_agreement * std::max(said.sizes[column], found.col(column).norm()) + said.least[column];
 }
 
 /// Whether a step in no simple ratio to those that told a slope finds it too: a wave with a whole number of periods
@@ -54,7 +54,7 @@ bool is_false(const SaidSlopes& said, const SlopeFunction& f, const RefinedDiffe
               Eigen::Index column) {
   const Eigen::VectorXd slope = found.slope.col(column);
   const double rounding = found.rounding.col(column).norm(), step = found.step.col(column).minCoeff();
-  const double together = slope_tolerance * slope.norm() + rounding;
+  const double together = slope_agreement * slope.norm() + rounding;
   if (!slope.allFinite() || !(found.change.col(column).norm() <= together)) return false;
   if ((said.slopes.col(column) - slope).norm() <= allowed_off(said, column, found.slope) + rounding) return false;
   return !has_kink(f, column, step, together) && is_found_between(f, column, step, slope, together);
