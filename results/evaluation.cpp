@@ -2,6 +2,7 @@
 
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/accuracy.hpp"
+#include "withy/core/simulation/instants.hpp"
 
 namespace withy {
 namespace {
@@ -36,9 +37,11 @@ std::string no_accelerations(const Model& model, const Evaluation& evaluation, b
 
 }  // namespace
 
-Evaluated evaluate(const study::Prepared& prepared, const State& state) {
+Evaluated evaluate(const study::Prepared& prepared, const State& given) {
   const EquationsOfMotion& equations = *prepared.equations;
   const Model& model = prepared.model();
+  // Relays and what is sampled act as a run from there has them do at once.
+  const State state = begun(model, equations, given);
   const Layout& layout = equations.layout();
   const DenseSystem system = equations.system(state.time, state.y);
   const Energies energies = equations.energies(state.y);

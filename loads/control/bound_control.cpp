@@ -72,10 +72,8 @@ std::string unit_of(const Model& model, const std::string& signal) {
   return "1";
 }
 
-/// Of what is commanded.
-std::string unit_of(const Model& model, const std::vector<InputPlace>& places) {
-  if (places.empty()) return "1";
-  const InputPlace& place = places.front();
+/// Of what is commanded there.
+std::string unit_of(const Model& model, const InputPlace& place) {
   if (place.speed < 0) return place.moment ? "N m" : "N";
   const auto speed = static_cast<std::size_t>(place.speed);
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
@@ -125,11 +123,12 @@ BoundControl::BoundControl(const Model& model, ControlEnds ends, std::shared_ptr
   for (const InputPlace& place : places_)
     if (place.speed < 0) frames_.push_back(place.frame);
   const std::string signal = names_.empty() ? "1" : unit_of(model, names_.front());
-  const std::string command =
-      places_.empty() ? in_words(block_->unit_of_output(), "1", signal) : unit_of(model, places_);
+  const std::string nowhere = in_words(block_->unit_of_output(), "1", signal),
+                    command = places_.empty() ? nowhere : unit_of(model, places_.front());
   const auto unit = [&](const std::string& given) { return in_words(given, command, signal); };
   for (std::size_t i = 0; i < outputs(); ++i)
-    numbers_.push_back({outputs() == 1 ? "command" : "command." + std::to_string(i), command});
+    numbers_.push_back({outputs() == 1 ? "command" : "command." + std::to_string(i),
+                        places_.empty() ? nowhere : unit_of(model, places_[i])});
   for (const ControlBlock::Shown& s : block_->shown()) numbers_.push_back({s.name, unit(s.unit)});
   const std::vector<std::string> states = block_->states();
   for (std::size_t i = 0; i < states.size(); ++i) numbers_.push_back({states[i], unit(block_->unit_of_state(i))});

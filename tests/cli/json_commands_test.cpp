@@ -12,6 +12,21 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
+/// s = x + 1 s ẋ = 0.5 is beyond `on`: a run from there begins with the relay on, and so does what is told of the state.
+TEST(Eval, ARelayActsAsWhereARunBegins) {
+  const Folder folder;
+  folder.write("relay.yaml", R"(format: withy/1
+time: {end: 1, output: 0.1}
+bodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {p: {type: revolute, axis: [0, 0, 1], parent: world, child: a}}
+loads: {jets: {type: hinge-relay, hinge: p, effort: 2, on: 0.4, off: 0.1, rate_time: 1}}
+initial: {hinges: {p: {position: 0.2, rate: 0.3}}}
+)");
+  folder.write("off.yaml", "{hinges: {p: {position: 0.2, rate: 0.3}}, held: {jets: [0]}}");
+  EXPECT_EQ(result(folder, {"eval", "relay.yaml"}).at("accelerations"), json({-2.0}));
+  EXPECT_EQ(result(folder, {"eval", "relay.yaml", "--state", "off.yaml"}).at("accelerations"), json({0.0}));
+}
+
 TEST(Eval, GivesOneObjectWithConsistentShapes) {
   const Folder folder;
   folder.write("state.json", R"({"hinges": {"shoulder": {"position": [0.1], "rate": [0.3]}},
