@@ -42,7 +42,7 @@ std::vector<BladeBranch> blade_branches(const study::ModesOf& run, std::size_t c
     if (!shown.contains(number)) continue;
     const std::string& name = first_of(at).dominated_by;
     const int nth = ++met[name];
-    all.push_back({nth > 1 ? fmt::format("{} ({})", name, nth) : name, std::move(at)});
+    all.push_back({number, nth > 1 ? fmt::format("{} ({})", name, nth) : name, std::move(at)});
   }
   return all;
 }

@@ -12,6 +12,7 @@ namespace withy {
 
 /// A motion of equal blades as it is seen from where the rotor does not turn.
 struct BladeBranch {
+  std::size_t number = 0;                   ///< as study::BladeModes::branches has it
   std::string name;                         ///< of where it begins: "blade1.bending_z[1] forward"; of several "… (2)"
   std::vector<const study::NamedMode*> at;  ///< one a value of the sweep; null where the value has none
 };

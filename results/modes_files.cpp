@@ -71,6 +71,13 @@ Json turn_json(const study::TurningModes& turn) {
   return j;
 }
 
+/// The head of a column of values, "spin.shaft[rpm]".
+std::string swept_column(const study::Sweep& sweep) {
+  if (sweep.none()) return "value";
+  const std::string unit = sweep.shown_unit();
+  return unit.empty() ? sweep.path : sweep.path + '[' + unit + ']';
+}
+
 constexpr double growth_height = 160;
 
 void include_growth(Panel& growths, double growth) {
@@ -275,6 +282,7 @@ Json modes_study_json(const std::string& scene, const study::Sweep& sweep, const
   Json j;
   j["scene"] = scene;
   j["sweep"] = sweep.none() ? Json() : Json(sweep.path);
+  if (!sweep.none()) j["unit"] = sweep.shown_unit().empty() ? Json() : Json(sweep.shown_unit());
   j["runs"] = Json::array();
   for (std::size_t i = 0; i < found.runs.size(); ++i) {
     j["runs"].push_back(modes_json(found.runs[i]));
@@ -343,10 +351,10 @@ std::string blades_picture(const std::vector<study::ModesOf>& runs, const std::s
 void write_modes(const std::filesystem::path& folder, const std::vector<study::ModesOf>& runs, const Json& content,
                  const std::string& title, const study::Sweep& sweep, std::size_t count) {
   write_file(folder / "modes.json", json_text(content));
-  write_file(folder / "modes.csv", modes_csv(runs, sweep.none() ? "value" : sweep.path));
+  write_file(folder / "modes.csv", modes_csv(runs, swept_column(sweep)));
   if (!sweep.none()) write_file(folder / "modes.svg", modes_picture(runs, title, swept_label(sweep), count));
   if (sees_blades(runs)) {
-    write_file(folder / "blades.csv", blades_csv(runs, sweep.none() ? "value" : sweep.path));
+    write_file(folder / "blades.csv", blades_csv(runs, swept_column(sweep)));
     if (!sweep.none()) write_file(folder / "blades.svg", blades_picture(runs, title, sweep, count));
   }
   if (has_report_page()) write_study_page(folder / report_name, "modes", title, modes_page(runs, sweep, count));

@@ -11,7 +11,7 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
                               const study::Sweep& sweep, std::size_t count, bool poles) {
   std::string text;
   if (!run.points.front().modes.empty() || !sweep.none())
-    text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep.path, count));
+    text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep, count));
   if (const std::string words = study::against_next_text(
           against, !against || against->compared == 1 ? "the lowest frequency"
                    : against->compared == 0           ? "the lowest frequencies"

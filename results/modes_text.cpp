@@ -66,9 +66,10 @@ std::string modes_text(const study::ModesOf& run, std::size_t count) {
   return text + '\n' + shapes.str();
 }
 
-std::string sweep_text(const study::ModesOf& run, const std::string& label, std::size_t count) {
+std::string sweep_text(const study::ModesOf& run, const study::Sweep& sweep, std::size_t count) {
+  const std::string &label = sweep.path, unit = sweep.shown_unit();
   count = std::min(count, run.branches());
-  std::vector<std::string> head = {label};
+  std::vector<std::string> head = {unit.empty() ? label : label + "\n[" + unit + "]"};
   for (std::size_t i = 0; i < count; ++i) head.push_back(run.name(i) + "\n[rad/s]");
   TextTable table(head);
   bool any_unstable = false;

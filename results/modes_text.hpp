@@ -15,7 +15,7 @@ std::string poles_text(const study::ModesAt& at);
 /// What a whole turn tells; empty where nobody asked. \param label of the value it is at; may be empty
 std::string turning_text(const study::TurningModes& turn, const std::string& label);
 /// A row a value, a column a branch; unstable ones marked.
-std::string sweep_text(const study::ModesOf& run, const std::string& label, std::size_t count);
+std::string sweep_text(const study::ModesOf& run, const study::Sweep& sweep, std::size_t count);
 
 /// All of it: each formulation with its distance from the next model up, and what a turn says.
 /// \param poles all eigenvalues are listed

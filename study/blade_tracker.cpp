@@ -11,18 +11,18 @@ namespace {
 using Exponent = std::complex<double>;
 
 /// Of 1 − likeness and distance, each up to 1: what has another shape and is not near is another motion.
-constexpr double unlike = 1.25;
+constexpr double most_unlike = 1.25;
 
 /// Where a branch is, and where it is expected at the next value.
-struct Course {
+struct Track {
   Exponent last, expected;
 };
 
-/// How unlike it a mode is.
-double cost_of(const Course& course, const Exponent& exponent, double likeness) {
+/// How most_unlike it a mode is.
+double cost_of(const Track& track, const Exponent& exponent, double likeness) {
   // The size at the last value keeps what is on its way through zero from being far from everything.
-  const double size = std::abs(exponent) + std::abs(course.expected) + std::abs(course.last);
-  return 1 - likeness + (size > 0 ? std::abs(exponent - course.expected) / size : 0.0);
+  const double size = std::abs(exponent) + std::abs(track.expected) + std::abs(track.last);
+  return 1 - likeness + (size > 0 ? std::abs(exponent - track.expected) / size : 0.0);
 }
 
 /// A mode, or its conjugate where that is the more like.
@@ -31,13 +31,13 @@ struct Continuation {
   bool conjugate = false;
 };
 
-Continuation continuation(const Course& course, const Eigen::VectorXcd& shape, const BladeModes& found,
+Continuation continuation(const Track& track, const Eigen::VectorXcd& shape, const BladeModes& found,
                           std::size_t mode) {
   const Exponent exponent = found.modes[mode].exponent;
   const Eigen::VectorXcd& its = found.shapes[mode];
-  const double as_it_is = cost_of(course, exponent, modal_assurance(shape, its, found.masses));
+  const double as_it_is = cost_of(track, exponent, modal_assurance(shape, its, found.masses));
   if (exponent.imag() == 0) return {as_it_is, false};
-  const double turned = cost_of(course, std::conj(exponent), modal_assurance(shape, its.conjugate(), found.masses));
+  const double turned = cost_of(track, std::conj(exponent), modal_assurance(shape, its.conjugate(), found.masses));
   return turned < as_it_is ? Continuation{turned, true} : Continuation{as_it_is, false};
 }
 
@@ -46,15 +46,15 @@ Continuation continuation(const Course& course, const Eigen::VectorXcd& shape, c
 void BladeTracker::follow(double value, BladeModes& found) {
   const std::size_t count = found.modes.size();
   if (count == 0 || (!last_.empty() && last_.front().shape.size() != found.shapes.front().size())) last_.clear();
-  const auto course = [&](const Branch& b) {
-    return Course{b.exponent, b.exponent + b.slope.value_or(0.0) * (value - b.value)};
+  const auto track = [&](const Branch& b) {
+    return Track{b.exponent, b.exponent + b.slope.value_or(0.0) * (value - b.value)};
   };
   Eigen::MatrixXd costs(last_.size(), count);
   for (std::size_t i = 0; i < last_.size(); ++i)
     for (std::size_t k = 0; k < count; ++k)
       costs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-          continuation(course(last_[i]), last_[i].shape, found, k).cost;
-  const std::vector<std::optional<std::size_t>> by = cheapest_pairs(costs, unlike);
+          continuation(track(last_[i]), last_[i].shape, found, k).cost;
+  const std::vector<std::optional<std::size_t>> by = cheapest_pairs(costs, most_unlike);
 
   found.branches.assign(count, 0);
   std::vector<bool> taken(count, false);
@@ -63,7 +63,7 @@ void BladeTracker::follow(double value, BladeModes& found) {
     if (!by[i]) continue;
     const std::size_t k = *by[i];
     taken[k] = true;
-    const bool conjugate = continuation(course(last_[i]), last_[i].shape, found, k).conjugate;
+    const bool conjugate = continuation(track(last_[i]), last_[i].shape, found, k).conjugate;
     Branch b{last_[i].number, value, found.modes[k].exponent, found.shapes[k], {}};
     if (conjugate) b.exponent = std::conj(b.exponent), b.shape = b.shape.conjugate().eval();
     if (value != last_[i].value) b.slope = (b.exponent - last_[i].exponent) / (value - last_[i].value);

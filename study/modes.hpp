@@ -26,6 +26,8 @@ struct Sweep {
   /// A value as a scene writes it, "3.75 rpm".
   [[nodiscard]] std::string text(double value) const;
   [[nodiscard]] std::string spun() const { return path.starts_with("spin.") ? path.substr(5) : ""; }
+  /// Of the values, to be shown: that of `unit`, of a rate without one rad/s; empty: the SI unit of what is swept.
+  [[nodiscard]] std::string shown_unit() const { return unit.empty() && !spun().empty() ? "rad/s" : unit; }
 };
 
 using StartState = std::function<State(const Prepared&)>;

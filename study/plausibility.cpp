@@ -137,9 +137,9 @@ void look_at_servo(const Prepared& prepared, const std::vector<double>& inertia,
   all.push_back(
       {gains.place(), fmt::format("the servo on '{}' drives an inertia of {} alone: damping {} over it makes a pole "
                                   "at about -{}/s, which explicit integrators follow in steps of its "
-                                  "reciprocal; a motor has a rotor: give the hinge its inertia times the "
-                                  "square of the gear ratio as 'reflected_inertia', or use radau",
-                                  hinge, brief(h), brief(d), brief(d / h))});
+                                  "reciprocal; a motor has a rotor: give hinges.{}.reflected_inertia, its inertia "
+                                  "times the square of the gear ratio, or use radau",
+                                  hinge, brief(h), brief(d), brief(d / h), hinge)});
 }
 
 void look_at_servos(const Prepared& prepared, std::vector<Remark>& all) {

@@ -12,6 +12,9 @@ namespace withy::study {
 namespace {
 constexpr std::size_t most_values = 100000;
 
+/// As fifteen digits have it: 220, and not the 219.99999999999997 that steps leave.
+double of_fifteen_digits(double value) { return plain_number(fmt::format("{:.15g}", value)).value_or(value); }
+
 /// "15 rpm" or "15rpm", as in scenes: a number, and the unit after it.
 struct RangeEnd {
   std::optional<double> number;
@@ -80,7 +83,7 @@ Sweep parse_sweep(const std::string& text, const std::string& option, std::optio
   Sweep sweep{text.substr(0, equals), {}, from_end.unit.empty() ? to_end.unit : from_end.unit};
   for (std::size_t k = 0; k < *count; ++k) {
     const double r = static_cast<double>(k) / static_cast<double>(*count - 1);
-    sweep.values.push_back(k + 1 == *count ? *to : *from + r * (*to - *from));
+    sweep.values.push_back(k + 1 == *count ? *to : of_fifteen_digits(*from + r * (*to - *from)));
   }
   return sweep;
 }

@@ -106,6 +106,18 @@ void read_harmonics(const Seen& seen, Eigen::Index column, const Eigen::VectorXd
     const double low = mode.exponent.imag() + n * turn_rate, round = instants * turn_rate;
     found.push_back({share, low + round * std::round((seen.frequency[column] - low) / round), std::move(c)});
   }
+  // A motion of a real multiplier is real: what lies at f and at −f is one line of what is seen.
+  if (mode.multiplier.imag() == 0) {
+    for (Harmonic& f : found) {
+      if (!(f.frequency > 0)) continue;
+      const auto other = std::find_if(found.begin(), found.end(), [&](const Harmonic& g) {
+        return std::abs(g.frequency + f.frequency) < 1e-6 * turn_rate;
+      });
+      if (other == found.end()) continue;
+      f.share += other->share;
+      other->share = 0;
+    }
+  }
   // Of equal ones that with the greater frequency, so that rounding decides nothing.
   std::stable_sort(found.begin(), found.end(), [&](const Harmonic& a, const Harmonic& b) {
     if (std::abs(a.share - b.share) > 1e-6 * total) return a.share > b.share;

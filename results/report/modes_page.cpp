@@ -73,6 +73,32 @@ Json branch_json(const study::ModesOf& run, std::size_t branch) {
   return {{"at", std::move(values)}};
 }
 
+std::string state_of(const study::BladeModes& seen, const study::NamedMode& m) {
+  constexpr double constant = 1e-9;
+  const bool growing = grows(seen, m);
+  if (seen.change >= constant) return growing ? "grows on average" : "decays on average";
+  if (m.exponent.imag() == 0) return growing ? "diverges" : "decays";
+  return growing ? "flutters" : "stable";
+}
+
+/// Of one configuration the exponents of a whole turn; null where nobody asked or there are none.
+Json floquet_json(const study::ModesOf& run) {
+  if (run.points.size() != 1 || !run.points[0].turn || !run.points[0].turn->floquet) return {};
+  const study::FloquetModes& found = *run.points[0].turn->floquet;
+  Json modes = Json::array();
+  for (const study::NamedMode& m : found.modes) {
+    Json lines = Json::array();
+    for (std::size_t i = 1; i < m.lines.size(); ++i)
+      lines.push_back({std::abs(m.lines[i].first) / (2 * std::numbers::pi), m.lines[i].second});
+    modes.push_back({{"hertz", m.exponent.imag() / (2 * std::numbers::pi)},
+                     {"growth", std::abs(m.exponent.real()) > found.resolution ? m.exponent.real() : 0.0},
+                     {"resolved", m.resolved},
+                     {"dominated_by", m.dominated_by},
+                     {"lines", std::move(lines)}});
+  }
+  return {{"stable", found.stable}, {"resolution", found.resolution}, {"modes", std::move(modes)}};
+}
+
 /// Equal blades seen from where the rotor does not turn; null where none were.
 Json blades_json(const study::ModesOf& run, std::size_t count) {
   Json branches = Json::array();
@@ -84,15 +110,17 @@ Json blades_json(const study::ModesOf& run, std::size_t count) {
         continue;
       }
       const study::NamedMode& m = *branch.at[k];
+      const study::BladeModes& seen = *run.points[k].turn->blades;
       const bool swings = m.exponent.imag() > 0;
       values.push_back({{"value", run.points[k].value},
                         {"hertz", m.exponent.imag() / (2 * std::numbers::pi)},
                         {"damping_ratio", swings ? Json(-m.exponent.real() / std::abs(m.exponent)) : Json()},
                         {"growth", m.exponent.real()},
-                        {"unstable", grows(*run.points[k].turn->blades, m)},
+                        {"unstable", grows(seen, m)},
+                        {"state", state_of(seen, m)},
                         {"dominated_by", m.dominated_by}});
     }
-    branches.push_back({{"at", std::move(values)}});
+    branches.push_back({{"number", branch.number + 1}, {"at", std::move(values)}});
   }
   const std::size_t blades = blades_seen(run);
   return blades == 0 ? Json() : Json{{"count", blades}, {"branches", std::move(branches)}};
@@ -106,7 +134,10 @@ Json run_json(const study::ModesOf& run, std::size_t count) {
                                    [b](const study::ModesAt& at) { return at.on(b) != nullptr && !at.on(b)->rigid; });
     if (moves) branches.push_back(branch_json(run, b));
   }
-  return {{"formulation", run.formulation}, {"branches", std::move(branches)}, {"blades", blades_json(run, count)}};
+  return {{"formulation", run.formulation},
+          {"branches", std::move(branches)},
+          {"blades", blades_json(run, count)},
+          {"floquet", floquet_json(run)}};
 }
 
 /// Each text once, without empty ones.
@@ -142,7 +173,7 @@ Json frozen_json(const std::vector<study::ModesOf>& runs) {
 }  // namespace
 
 std::string swept_label(const study::Sweep& sweep) {
-  const std::string unit = sweep.unit.empty() && !sweep.spun().empty() ? "rad/s" : sweep.unit;
+  const std::string unit = sweep.shown_unit();
   return sweep.path + (unit.empty() ? "" : " [" + unit + "]");
 }
 

@@ -59,6 +59,26 @@ TEST(Mathieu, damped_is_the_undamped_shifted) {
     EXPECT_NEAR(damped[i].exponent.real(), plain[i].exponent.real() - 0.2, 1e-9);
 }
 
+/// In the principal instability the multiplier is real, and the motion e^{λt} (cos t + …): an instrument sees one line
+/// at 1 rad/s, which harmonics at 1 and −1 make.
+TEST(Mathieu, motions_of_a_real_multiplier_are_seen_once_at_each_frequency) {
+  const FloquetAnalysis f = floquet(mathieu(1, 0.3), Eigen::VectorXd::Ones(1));
+  ASSERT_EQ(f.modes.size(), 2U);
+  for (const CharacteristicMode& mode : f.modes) {
+    EXPECT_NEAR(mode.exponent.imag(), 1, 1e-9);
+    EXPECT_GT(mode.share, 0.95);
+    double all = 0;
+    std::vector<double> seen;
+    for (const auto& [frequency, share] : mode.lines) {
+      for (const double other : seen) EXPECT_GT(std::abs(std::abs(frequency) - other), 1) << frequency;
+      seen.push_back(std::abs(frequency));
+      all += share;
+    }
+    EXPECT_LE(all, 1 + 1e-12);
+    EXPECT_EQ(seen[0], mode.exponent.imag());
+  }
+}
+
 /// Nothing turns with a period that is looked at all the same: the exponents are the eigenvalues, with the whole
 /// frequency although the multiplier tells it by 2π/T alone.
 TEST(Floquet, of_constant_coefficients_is_the_eigenvalue) {

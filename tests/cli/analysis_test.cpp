@@ -64,7 +64,7 @@ TEST(Modes, ASweepKeepsBranchesInTableAndPicture) {
   const std::string csv = folder.read("campbell/modes.csv");
   const auto rows = lines(csv);
   EXPECT_EQ(rows.size(), 1U + 2 * 6 * 8);
-  EXPECT_THAT(rows[0], HasSubstr("formulation,spin.axle,branch"));
+  EXPECT_THAT(rows[0], HasSubstr("formulation,spin.axle[rad/s],branch"));
   EXPECT_THAT(folder.read("campbell/modes.svg"), HasSubstr("</svg>"));
   const json j = json::parse(folder.read("campbell/modes.json"));
   // Inconsistent lag at 5: grows with √(25 − ω₁²), and it is the branch that began as lag.

@@ -89,7 +89,7 @@ TEST(Turning, ASweepOfARotorsRateFromRestLeavesWhatTheTowerSees) {
   EXPECT_EQ(f.status, 0) << f.err;
   EXPECT_THAT(f.out, HasSubstr("At spin.shaft = 0 rpm nothing turns"));
   const std::string csv = folder.read("campbell/blades.csv"), picture = folder.read("campbell/blades.svg");
-  EXPECT_THAT(csv, HasSubstr("formulation,spin.shaft,mode,dominated_by,frequency[rad/s],frequency[Hz]"));
+  EXPECT_THAT(csv, HasSubstr("formulation,spin.shaft[rpm],mode,dominated_by,frequency[rad/s],frequency[Hz]"));
   EXPECT_THAT(csv, Not(HasSubstr("\nquadratic,0,")));
   for (const char* name : {"blade1.bending_z[1] backward", "blade1.bending_z[1] forward"}) {
     EXPECT_THAT(csv, HasSubstr(name));

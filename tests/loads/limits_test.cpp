@@ -35,6 +35,18 @@ hinges:
   two: {type: revolute, axis: [0, 0, 1], parent: a.end, child: b}
 )";
 
+/// A force and a torque from one law: each is told in the unit of its place.
+TEST(Control, CommandsOfSeveralPlacesHaveTheirOwnUnits) {
+  const Shown s(limited_arm + R"(
+outputs: {c: {type: control, of: law}}
+loads:
+  turn: {type: input, hinge: two}
+  push: {type: input, frame: a.end, direction: [0, 1, 0]}
+  law: {type: state-space, of: one, to: [turn, push], A: [[-1]], B: [[1]], C: [[1], [2]]}
+)");
+  EXPECT_THAT(names(s), testing::IsSupersetOf({"c.command.0[N m]", "c.command.1[N]"}));
+}
+
 /// All that follows trajectories tells its efforts and how far the hinges are from them.
 TEST(Tracking, ErrorsAreThoseOfTheTrajectory) {
   const auto r = [](double t) {

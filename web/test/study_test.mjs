@@ -193,6 +193,10 @@ async function check_blades(browser, folder, run, troubles) {
   assert.match(await text(page, '#mode'), /kinetic energy/);
   assert.match(await text(page, '.answer'), /one frozen angle/);
   await page.close();
+  run('modes', scene, '--floquet', '--spin', 'shaft=12 rpm', '--set', 'motions={}', '--set', 'loads={}', '--out', join(folder, 'turn'));
+  const whole = await opened(browser, join(folder, 'turn/report.html'), 'theme=light', troubles);
+  assert.match(await text(whole, '.scroll'), /The whole turn is (un)?stable \(Floquet/);
+  await whole.close();
 }
 
 function write_plan(folder, name, text) {

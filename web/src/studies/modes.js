@@ -215,10 +215,19 @@ export class Modes {
   table() {
     const rows = this.branches.map(b => ({ b, m: b.at.find(Boolean) }));
     const several = this.data.runs.length > 1 ? [['formulation', r => r.b.run.formulation]] : [];
-    const table = table_of([...several, ['mode', r => r.b.index + 1], ['frequency [Hz]', r => hertz(r.m), r => number(hertz(r.m))], ['[rad/s]', r => radians(r.m), r => number(radians(r.m))],
-      ['damping ratio [%]', r => r.m.damping_ratio == null ? null : 100 * r.m.damping_ratio, r => r.m.damping_ratio == null ? '–' : number(100 * r.m.damping_ratio)], ['mostly', r => r.m.dominated_by], ['state', r => r.m.state ?? '–']], rows, r => this.choose(r.b, r.m));
+    const table = table_of([...several, ['mode', r => r.b.number ?? r.b.index + 1], ['frequency [Hz]', r => hertz(r.m), r => number(hertz(r.m))], ['[rad/s]', r => radians(r.m), r => number(radians(r.m))],
+      ['damping ratio [%]', r => r.m.damping_ratio == null ? null : 100 * r.m.damping_ratio, r => r.m.damping_ratio == null ? '–' : number(100 * r.m.damping_ratio)], ['growth [1/s]', r => r.m.growth, r => number(r.m.growth)], ['mostly', r => r.m.dominated_by], ['state', r => r.m.state ?? '–']], rows, r => this.choose(r.b, r.m));
     const frame = element('div', null, { class: 'scroll' });
+    for (const run of this.data.runs) if (run.floquet) frame.append(...this.exponents(run));
     frame.append(table);
     return frame;
+  }
+
+  // The whole turn first: what the modes of one angle do not tell.
+  exponents({ formulation, floquet }) {
+    const of = this.data.runs.length > 1 ? `${formulation}: ` : '', known = (r, v) => (r.resolved ? number(v) : '–');
+    const beside = r => r.lines.map(([f, share]) => `${number(f)} (${Math.round(100 * share)} %)`).join(', ');
+    const table = table_of([['growth [1/s]', r => r.growth, r => (r.resolved ? number(r.growth) : `< ${number(r.growth)}`)], ['frequency [Hz]', r => r.hertz, r => known(r, r.hertz)], ['[rad/s]', r => radians(r), r => known(r, radians(r))], ['mostly', r => r.dominated_by], ['seen beside at [Hz]', beside]], floquet.modes);
+    return [element('h2', `${of}The whole turn is ${floquet.stable ? 'stable' : 'unstable'} (Floquet; growth to ${number(floquet.resolution)}/s)`), table, element('h2', 'Modes')];
   }
 }
