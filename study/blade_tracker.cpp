@@ -18,7 +18,7 @@ struct Track {
   Exponent last, expected;
 };
 
-/// How most_unlike it a mode is.
+/// How unlike it a mode is.
 double cost_of(const Track& track, const Exponent& exponent, double likeness) {
   // The size at the last value keeps what is on its way through zero from being far from everything.
   const double size = std::abs(exponent) + std::abs(track.expected) + std::abs(track.last);
