@@ -97,6 +97,12 @@ double FrequencyStudy::error(const Point& point, const std::string& name, double
   return frequency ? std::abs(*frequency / truth - 1) : std::numeric_limits<double>::infinity();
 }
 
+std::optional<double> FrequencyStudy::frozen_from() const {
+  for (const auto& [value, at] : references_)
+    if (at.frozen()) return value;
+  return {};
+}
+
 double FrequencyStudy::reference_error() {
   Point coarser = reference_;
   --coarser.modes;
