@@ -84,7 +84,10 @@ double FrequencyStudy::reference_frequency(const std::string& name, double value
   if (!frequency)
     throw InputError(fmt::format("the reference ({}, {} modes) has no stable mode of '{}' at {} = {}{}",
                                  reference_.formulation, reference_.modes, name, question_.sweep.path, value,
-                                 found.problem.empty() ? "" : ": " + found.problem));
+                                 !found.problem.empty() ? ": " + found.problem
+                                 : found.frozen()       ? ": the equations change over a turn or with time, and modes "
+                                                          "of one frozen angle may grow where a whole turn is stable"
+                                                        : ""));
   return *frequency;
 }
 

@@ -12,9 +12,12 @@
 
 #include "withy/study/effective_mass.hpp"
 #include "withy/study/equilibrium.hpp"
+#include "withy/study/formulation_modes.hpp"
+#include "withy/study/frequencies.hpp"
 #include "withy/study/narrow_loads.hpp"
 #include "withy/study/response.hpp"
 #include "withy/study/stability.hpp"
+#include "withy/study/variation_text.hpp"
 #include "withy/tests/study/linear_scenes.hpp"
 
 namespace withy::study {
@@ -211,6 +214,47 @@ loads: {air: {type: expression, hinge: flap, value: "-20*flap.rate + 20000*exp(-
   const double inertia = 62.5 + 30 * 2.5 * 2.5;
   const double mean = 20000 / std::sqrt(8000 * M_PI) * (1 + 1.0 / 32000) - 20;
   EXPECT_NEAR(at.turn->floquet->modes.front().exponent.real(), mean / (2 * inertia), 1e-3 * mean / (2 * inertia));
+}
+
+/// A blade to one side of a shaft on a base that gives way: its equations change over a turn.
+const std::string one_blade = R"(
+gravity: [0, 0, 0]
+bodies:
+  base: {type: rigid, mass: 5}
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  blade: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 40, modes: 2}}
+hinges:
+  y: {type: prismatic, axis: [0, 1, 0], parent: world, child: base}
+  shaft: {type: revolute, axis: [0, 0, 1], parent: base, child: hub}
+  root: {type: weld, parent: hub, child: blade}
+loads: {ky: {type: hinge-spring, hinge: y, stiffness: 900}}
+)";
+
+TEST(Frequencies, OfWhatTurnsAreThoseOfOneAngleAndSaySo) {
+  const Prepared prepared = scene_of(one_blade);
+  FrequencyQuestion question;
+  question.points = {{"quadratic", "", 2, "dopri5", 1e-6, {}}};
+  question.sweep = parse_sweep("spin.shaft=0:0.5:3", "over");
+  question.count = 1;
+  FrequencyStudy study(prepared, test::plugins(), question);
+  for (const double value : question.sweep.values)
+    static_cast<void>(study.reference_frequency(study.names().front(), value));
+  EXPECT_EQ(study.frozen_from(), 0.25);
+}
+
+TEST(MountedDamping, OfWhatTurnsIsThatOfOneAngleAndSaysSo) {
+  const Prepared prepared = scene_of(one_blade);
+  for (const bool turns : {false, true}) {
+    ModesQuestion question;
+    question.compared = 0;
+    question.damp = {0.01};
+    if (turns) question.holding.spun = {{"shaft", 0.25}};
+    if (!turns) question.holding.locked = {"shaft"};
+    const ModesFound found =
+        find_modes(prepared, test::plugins(), question, [](const std::string&) { return Control(); });
+    ASSERT_TRUE(found.damping.has_value());
+    EXPECT_EQ(found.damping->frozen, turns);
+  }
 }
 
 TEST(EffectiveMass, OfWhatTurnsIsThatOfOneAngleAndSaysSo) {
