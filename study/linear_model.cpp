@@ -36,7 +36,7 @@ std::string quoted_list(const std::vector<std::string>& names) {
 }
 
 /// Whether motions move their hinges: what begins to move is where it is.
-bool moves(const Configuration& c) {
+bool motions_move(const Configuration& c) {
   const std::vector<MotionNode>& motions = c.prepared().model().motions();
   return std::any_of(motions.begin(), motions.end(),
                      [&](const MotionNode& node) { return node.motion->at(c.state().time).rate != 0; });
@@ -56,7 +56,7 @@ std::vector<std::string> without_inputs(const Configuration& c, std::vector<std:
 }
 
 /// What of inputs and outputs is that of one instant, where A is not.
-void look_further(const Configuration& c, SmallMotions& motions, const std::vector<LinearInput>& inputs,
+void look_at_ends(const Configuration& c, SmallMotions& motions, const std::vector<LinearInput>& inputs,
                   const std::vector<LinearOutput>& outputs, const std::vector<std::string>& names,
                   const StatesToCome& states, LinearModel& linear) {
   EndsToCome ends = ends_to_come(c, motions, inputs, outputs, names, states);
@@ -121,7 +121,8 @@ About about(const Configuration& c, const SmallMotions& motions, SampledLoads& s
   const bool turns = is_of_one_angle(turn);
   if (!turns) linear.shaking = without_inputs(c, timed.shaking);
   const std::vector<std::size_t> uneven = uneven_motions(c.dynamics(), c.state(), c.held());
-  StatesToCome states(c, motions, turn.turning, !timed.pushing.empty() || !uneven.empty(), uneven.empty() || moves(c));
+  StatesToCome states(c, motions, turn.turning, !timed.pushing.empty() || !uneven.empty(),
+                      uneven.empty() || motions_move(c));
   if (!turns && linear.shaking.empty()) {
     SampledToCome to_come = sampled_to_come(c, motions, sampled, states);
     linear.shaking = std::move(to_come.shaking), linear.turning_loads = std::move(to_come.turning);
@@ -194,7 +195,7 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
   const std::vector<LinearInput> inputs = chosen_inputs(c, motions, ports.inputs);
   SampledLoads sampled(motions);
   auto [linear, states] = about(c, motions, sampled);
-  if (!linear.frozen) look_further(c, motions, inputs, outputs, ports.outputs, states, linear);
+  if (!linear.frozen) look_at_ends(c, motions, inputs, outputs, ports.outputs, states, linear);
   look(motions, sampled, inputs, outputs, linear);
   Eigen::MatrixXd efforts(motions.by_effort().cols(), static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t k = 0; k < inputs.size(); ++k) {
