@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <stdexcept>
 
 #include "withy/core/analysis/between_instants.hpp"
@@ -30,6 +31,21 @@ FloquetModes floquet_of(const TurningForm& form, const Configuration& c) {
   return modes;
 }
 
+/// How many waves the pattern of a mode has round the rotor, less those that run backward: shares of kinetic energy.
+double waves_of(const MultibladeForm& form, const CharacteristicMode& mode) {
+  const std::complex<double> i(0, 1);
+  double all = 0, turning = 0;
+  for (Eigen::Index k = 0; k < form.masses.size(); ++k) {
+    const MultibladeCoordinate& c = form.coordinates[static_cast<std::size_t>(k)];
+    const double mass = std::abs(form.masses[k]);
+    all += mass * std::norm(mode.shape[k]);
+    if (c.kind != MultibladeCoordinate::Kind::cosine) continue;
+    const std::complex<double> cosine = mode.shape[k], sine = mode.shape[c.partner];
+    turning += 0.5 * mass * c.order * (std::norm(cosine + i * sine) - std::norm(cosine - i * sine));
+  }
+  return all > 0 ? turning / all : 0.0;
+}
+
 /// The first group of equal branches that turns; throws where there is none.
 BladeModes blades_of(const TurningForm& form, const Configuration& c, const std::vector<std::string>& names) {
   const std::vector<Blades> groups = equal_branches(c.prepared().model(), names);
@@ -41,11 +57,13 @@ BladeModes blades_of(const TurningForm& form, const Configuration& c, const std:
       BladeModes found;
       found.blades = seen.blades.names;
       found.change = seen.A.change();
+      found.rate = 2 * std::numbers::pi / seen.A.period();
       found.masses = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(seen.coordinates.size()));
       found.masses.head(seen.masses.size()) = seen.masses.cwiseAbs();
       for (const CharacteristicMode& mode : constant_modes(seen.A.mean(), seen.masses)) {
         found.modes.push_back(named(mode, pattern(seen, mode)));
         found.shapes.push_back(mode.shape);
+        found.waves.push_back(waves_of(seen, mode));
       }
       return found;
     } catch (const std::domain_error& e) {

@@ -37,7 +37,10 @@ struct BladeModes {
   std::vector<NamedMode> modes;     ///< of the equations averaged over a turn
   /// Of each mode: displacements in multi-blade coordinates, then states of loads; what dominates is 1.
   std::vector<Eigen::VectorXcd> shapes;
-  Eigen::VectorXd masses;             ///< that weigh shapes; zero for the states of loads
+  Eigen::VectorXd masses;  ///< that weigh shapes; zero for the states of loads
+  double rate = 0;         ///< of the rotor [rad/s]
+  /// Of each mode the waves of its pattern round the rotor, weighed by kinetic energy; below 0 where it runs backward.
+  std::vector<double> waves;
   std::vector<std::size_t> branches;  ///< along a sweep, of each mode; empty where nobody followed them
   double change = 0;                  ///< what the average leaves out: greatest change of an element, of the greatest
 };
