@@ -17,7 +17,8 @@ Json numbers(const Eigen::Vector3d& v) { return std::vector<double>(v.begin(), v
 }  // namespace
 
 Json effective_mass_json(const study::EffectiveMasses& masses) {
-  Json j{{"total", masses.total}, {"sum", numbers(masses.sum())}, {"modes", Json::array()}};
+  Json j{
+      {"total", masses.total}, {"sum", numbers(masses.sum())}, {"turning", masses.turning}, {"modes", Json::array()}};
   const Eigen::Matrix3Xd each = masses.masses();
   for (Eigen::Index i = 0; i < each.cols(); ++i)
     j["modes"].push_back({{"hertz", masses.frequencies[i] / (2 * std::numbers::pi)},
@@ -39,8 +40,12 @@ std::string effective_mass_text(const study::EffectiveMasses& masses) {
     row(std::to_string(i + 1), fmt::format("{:.5g}", masses.frequencies[i] / (2 * std::numbers::pi)), each.col(i));
   }
   row("all", "", masses.sum());
-  return fmt::format("Effective mass along the world's axes, of {:.5g} kg; undamped modes, lowest first\n\n{}",
-                     masses.total, table.str());
+  return fmt::format("Effective mass along the world's axes, of {:.5g} kg; undamped modes, lowest first\n{}\n{}",
+                     masses.total,
+                     masses.turning ? "The hinges turn and the modes with them: these are the shares at this angle. A "
+                                      "base that shakes at one frequency is felt beside it by the rate of the turn.\n"
+                                    : "",
+                     table.str());
 }
 
 }  // namespace withy

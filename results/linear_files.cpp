@@ -33,6 +33,14 @@ Json rows_json(const Eigen::MatrixXd& m) {
   return rows;
 }
 
+Json turning_json(const study::LinearModel& linear) {
+  return {{"loads", linear.turning_loads},
+          {"inputs", linear.turning_inputs},
+          {"outputs", linear.turning_outputs},
+          {"timed_outputs", linear.timed_outputs},
+          {"moving_outputs", linear.moving_outputs}};
+}
+
 Json linear_model_json(const study::Configuration& c, const study::LinearModel& linear) {
   Json accelerations = Json::object();
   for (const auto& [name, value] : linear.accelerations) accelerations[name] = value;
@@ -57,6 +65,7 @@ Json linear_model_json(const study::Configuration& c, const study::LinearModel& 
   j["equilibrium"] = linear.equilibrium;
   j["frozen"] = linear.frozen;
   j["shaking"] = linear.shaking;
+  j["turning"] = turning_json(linear);
   j["changing"] = linear.changing;
   j["derivatives"] = linear.derivatives;
   j["output_derivatives"] = linear.output_derivatives;

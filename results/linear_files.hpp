@@ -12,6 +12,8 @@
 
 namespace withy {
 
+/// What of a model that is of one instant turns, or changes with time (LinearModel), by names.
+nlohmann::ordered_json turning_json(const study::LinearModel& linear);
 /// What `withy linearize` prints.
 nlohmann::ordered_json linear_model_json(const study::Configuration& configuration, const study::LinearModel& linear);
 /// A, B, C, D, names, units and the period, as the JSON has them.

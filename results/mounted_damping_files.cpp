@@ -20,7 +20,8 @@ std::vector<std::string> settings(const study::MountedDamping& damping) {
 }  // namespace
 
 nlohmann::ordered_json mounted_damping_json(const study::MountedDamping& damping) {
-  nlohmann::ordered_json j{{"modes", nlohmann::ordered_json::array()}, {"set", settings(damping)}};
+  nlohmann::ordered_json j{
+      {"modes", nlohmann::ordered_json::array()}, {"set", settings(damping)}, {"frozen", damping.frozen}};
   for (const study::DampedMode& m : damping.modes)
     j["modes"].push_back({{"hertz", m.frequency / (2 * std::numbers::pi)}, {"asked", m.asked}, {"reached", m.reached}});
   return j;
@@ -35,6 +36,10 @@ std::string mounted_damping_text(const study::MountedDamping& damping) {
   }
   std::string text =
       "Damping of the bodies' own modes that gives the tree's, as it is mounted, their ratios\n\n" + table.str();
+  if (damping.frozen)
+    text +=
+        "\nThe equations change as hinges turn, or with time: this is found and reached at one angle, and bodies that "
+        "are equal, as blades, may be given different ratios.\n";
   for (const std::size_t i : damping.beyond) text += fmt::format("\nMode {} has more damping from loads alone.", i + 1);
   return text + (damping.beyond.empty() ? "" : "\n") + "\n" + scene_lines(settings(damping));
 }

@@ -107,6 +107,7 @@ Json response_json(const study::Configuration& c, const study::Response& r) {
   j["equilibrium"] = r.model.equilibrium;
   j["frozen"] = r.model.frozen;
   j["shaking"] = r.model.shaking;
+  j["turning"] = turning_json(r.model);
   j["changing"] = r.model.changing;
   j["held"] = c.held_names();
   j["derivatives"] = r.model.derivatives;

@@ -142,10 +142,12 @@ std::string response_text(const study::Configuration& c, const study::Response& 
   std::string text;
   if (r.opened)
     text = fmt::format("{} opened: {}\n", r.model.inputs[0].name,
-                       r.margins ? loop_words(*r.margins, s.sampled()) : "the closed loop is not well posed");
+                       r.model.frozen ? "its stability is not known"
+                       : r.margins    ? loop_words(*r.margins, s.sampled())
+                                      : "the closed loop is not well posed");
   else
-    text = fmt::format("{} to {}: {}, {}\n", r.model.inputs[0].name, r.model.outputs[0].name, peak_words(r),
-                       static_words(r));
+    text = fmt::format("{} to {}{}: {}, {}\n", r.model.inputs[0].name, r.model.outputs[0].name,
+                       r.model.frozen ? ", at this instant alone" : "", peak_words(r), static_words(r));
   text += fmt::format("{} in {}, {}{}{}\n", c.prepared().title(), study::formulation_title(c.prepared().scene),
                       s.sampled() ? fmt::format("sampled every {:g} s, the input held between samples", s.period)
                                   : "continuous in time",
@@ -153,7 +155,8 @@ std::string response_text(const study::Configuration& c, const study::Response& 
                                           : "; the state is no equilibrium: this is the neighbourhood of a motion "
                                             "(withy equilibrium --out FILE keeps one for --at)",
                       r.model.output_derivatives == "exact" ? "" : "; output " + r.model.output_derivatives);
-  for (const std::string& note : {study::note_of_frozen(r.model), study::note_of_changing(r.model, c.state().time)})
+  for (const std::string& note : {study::note_of_frozen(r.model), study::note_of_moving(r.model),
+                                  study::note_of_changing(r.model, c.state().time)})
     if (!note.empty()) text += note + '\n';
   if (r.opened) text += static_words(r) + "; " + peak_words(r) + '\n';
   text += root_rows(r, r.roots.poles, true) + root_rows(r, r.roots.zeros, false) + peak_rows(r);

@@ -136,6 +136,7 @@ nlohmann::ordered_json thresholds_json(const std::string& scene, const std::stri
                             {{"formulation", thresholds.reference},
                              {"modes", thresholds.reference_modes},
                              {"relative_error", thresholds.reference_error}}},
+                           {"frozen_from", thresholds.frozen_from ? Json(*thresholds.frozen_from) : Json()},
                            {"thresholds", nlohmann::ordered_json::array()}};
   for (const study::Threshold& row : thresholds.rows) j["thresholds"].push_back(threshold_json(row, range));
   return j;

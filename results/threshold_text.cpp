@@ -36,7 +36,16 @@ std::string threshold_title(const std::string& scene, bool frequencies, double l
 
 std::string threshold_text(const std::string& title, const study::Thresholds& thresholds, const study::Sweep& range,
                            const ThresholdLabels& labels) {
-  return title + "\n\n" + crossings_text(thresholds.rows, range, labels) +
+  const std::string frozen =
+      thresholds.frozen_from
+          ? fmt::format(
+                "\nAt {} = {:g}, the least such value looked at, the equations of small motions change over a turn or "
+                "with "
+                "time: frequencies are those of one frozen angle there (withy modes --floquet looks at the whole "
+                "turn).\n",
+                range.path, *thresholds.frozen_from)
+          : std::string();
+  return title + "\n\n" + crossings_text(thresholds.rows, range, labels) + frozen +
          fmt::format("\nReference: {}, {} modes; its own error, against one mode less{}: {:.2g} %.\n",
                      thresholds.reference, thresholds.reference_modes,
                      labels.frequencies ? "" : " and ten times the tolerance", 100 * thresholds.reference_error);

@@ -18,7 +18,7 @@ struct Track {
   Exponent last, expected;
 };
 
-/// How most_unlike it a mode is.
+/// How unlike it a mode is.
 double cost_of(const Track& track, const Exponent& exponent, double likeness) {
   // The size at the last value keeps what is on its way through zero from being far from everything.
   const double size = std::abs(exponent) + std::abs(track.expected) + std::abs(track.last);
@@ -47,7 +47,8 @@ void BladeTracker::follow(double value, BladeModes& found) {
   const std::size_t count = found.modes.size();
   if (count == 0 || (!last_.empty() && last_.front().shape.size() != found.shapes.front().size())) last_.clear();
   const auto track = [&](const Branch& b) {
-    return Track{b.exponent, b.exponent + b.slope.value_or(0.0) * (value - b.value)};
+    const Exponent turned(0, b.waves * (found.rate - b.rate));
+    return Track{b.exponent, b.exponent + (b.slope ? *b.slope * (value - b.value) : turned)};
   };
   Eigen::MatrixXd costs(last_.size(), count);
   for (std::size_t i = 0; i < last_.size(); ++i)
@@ -56,6 +57,9 @@ void BladeTracker::follow(double value, BladeModes& found) {
           continuation(track(last_[i]), last_[i].shape, found, k).cost;
   const std::vector<std::optional<std::size_t>> by = cheapest_pairs(costs, most_unlike);
 
+  const auto begun = [&](std::size_t number, std::size_t k) {
+    return Branch{number, value, found.modes[k].exponent, found.shapes[k], found.waves[k], found.rate, {}};
+  };
   found.branches.assign(count, 0);
   std::vector<bool> taken(count, false);
   std::vector<Branch> now;
@@ -64,8 +68,8 @@ void BladeTracker::follow(double value, BladeModes& found) {
     const std::size_t k = *by[i];
     taken[k] = true;
     const bool conjugate = continuation(track(last_[i]), last_[i].shape, found, k).conjugate;
-    Branch b{last_[i].number, value, found.modes[k].exponent, found.shapes[k], {}};
-    if (conjugate) b.exponent = std::conj(b.exponent), b.shape = b.shape.conjugate().eval();
+    Branch b = begun(last_[i].number, k);
+    if (conjugate) b.exponent = std::conj(b.exponent), b.shape = b.shape.conjugate().eval(), b.waves = -b.waves;
     if (value != last_[i].value) b.slope = (b.exponent - last_[i].exponent) / (value - last_[i].value);
     found.branches[k] = b.number;
     now.push_back(std::move(b));
@@ -73,7 +77,7 @@ void BladeTracker::follow(double value, BladeModes& found) {
   for (std::size_t k = 0; k < count; ++k) {
     if (taken[k]) continue;
     found.branches[k] = next_;
-    now.push_back({next_++, value, found.modes[k].exponent, found.shapes[k], {}});
+    now.push_back(begun(next_++, k));
   }
   last_ = std::move(now);
 }

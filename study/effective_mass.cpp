@@ -1,13 +1,48 @@
 #include "withy/study/effective_mass.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/core/analysis/turn.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/study/states_of_loads.hpp"
 
 namespace withy::study {
+namespace {
+
+/// Momentum of unit speeds of what is free along the world's axes: it is linear in the speeds.
+Eigen::MatrixX3d momenta_at(const Configuration& c, const State& at, const std::vector<Eigen::Index>& free) {
+  const auto seen = c.prepared().equations->make_observation();
+  Eigen::MatrixX3d P(static_cast<Eigen::Index>(free.size()), 3);
+  std::vector<double> y = at.y;
+  const auto speeds = y.begin() + static_cast<std::ptrdiff_t>(c.layout().positions);
+  std::fill(speeds, speeds + static_cast<std::ptrdiff_t>(c.layout().speeds), 0.0);
+  for (Eigen::Index i = 0; i < P.rows(); ++i) {
+    speeds[free[static_cast<std::size_t>(i)]] = 1;
+    seen->observe(y);
+    P.row(i) = Eigen::Map<const Eigen::RowVector3d>(seen->energies().linear_momentum.data());
+    speeds[free[static_cast<std::size_t>(i)]] = 0;
+  }
+  return P;
+}
+
+/// Whether they are others as hinges go on that move, beyond rounding.
+bool momenta_turn(const Configuration& c, const Eigen::MatrixX3d& P, const std::vector<Eigen::Index>& free) {
+  constexpr double rounding = 1e-9;
+  const Turning turned = turning(c.prepared().model(), c.state());
+  double over = turned.period;
+  for (const std::size_t s : turned.speeds)
+    if (!(turned.period > 0)) over = std::max(over, full_turn / std::abs(c.state().y[c.layout().positions + s]));
+  for (const double share : in_no_ratio) {
+    const Eigen::MatrixX3d there = momenta_at(c, carried(c.prepared().model(), turned, c.state(), share * over), free);
+    if ((there - P).cwiseAbs().maxCoeff() > rounding * P.cwiseAbs().maxCoeff()) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 EffectiveMasses effective_masses(const Configuration& c) {
   refuse_states_of_loads(c.prepared(), "--effective-mass");
@@ -19,18 +54,8 @@ EffectiveMasses effective_masses(const Configuration& c) {
   result.participation.resize(3, n);
   if (n == 0) return result;
 
-  // Momentum is linear in the speeds.
-  const auto seen = c.prepared().equations->make_observation();
-  Eigen::MatrixX3d P(n, 3);
-  std::vector<double> y = c.state().y;
-  const auto speeds = y.begin() + static_cast<std::ptrdiff_t>(c.layout().positions);
-  std::fill(speeds, speeds + static_cast<std::ptrdiff_t>(c.layout().speeds), 0.0);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    speeds[free[static_cast<std::size_t>(i)]] = 1;
-    seen->observe(y);
-    P.row(i) = Eigen::Map<const Eigen::RowVector3d>(seen->energies().linear_momentum.data());
-    speeds[free[static_cast<std::size_t>(i)]] = 0;
-  }
+  const Eigen::MatrixX3d P = momenta_at(c, c.state(), free);
+  result.turning = momenta_turn(c, P, free);
   const Tangents t = c.dynamics().tangents(c.state().time, c.state().y, accelerations_of(c));
   const Eigen::MatrixXd M = t.mass(free, free), K = t.by_position(free, free);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(0.5 * (K + K.transpose()),

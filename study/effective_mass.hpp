@@ -16,6 +16,9 @@ struct EffectiveMasses {
   Eigen::VectorXd frequencies;     ///< [rad/s], lowest first; negative: √−ω² of a mode that grows
   Eigen::Matrix3Xd participation;  ///< φᵀ P / √(φᵀ M φ) [√kg], a column a mode
   double total = 0;                ///< of all bodies [kg]
+  /// Whether the momentum of unit speeds is another along the world's axes as hinges go on that move: the shares are
+  /// those of one angle, and a base that shakes is felt beside its own frequency.
+  bool turning = false;
   /// Of each mode, along the world's axes [kg].
   [[nodiscard]] Eigen::Matrix3Xd masses() const { return participation.cwiseAbs2(); }
   /// Of all modes: the total where the free speeds let everything move along that axis; else what the modes leave of it

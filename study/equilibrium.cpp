@@ -33,14 +33,18 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
   }
   found.passing = moving_freely(c, state);
   found.instant = !found.passing.empty() || !turn.uneven.empty() || !turn.timed.empty();
-  found.changing = !found.passing.empty() ? passing_text(found.passing)
-                   : !turn.uneven.empty() ? uneven_text(turn.uneven)
-                   : !turn.timed.empty()  ? timed_text(turn.timed)
-                   : slides(c.dynamics(), state)
-                       ? "Hinges slide and what acts on the free coordinates changes on the way: this state is steady "
-                         "at this place alone."
-                       : "The hinges turn and what acts on the free coordinates turns with them (gravity in the plane "
-                         "of rotation, as a rule): this state is steady at this angle alone.";
+  found.changing =
+      !found.passing.empty()     ? passing_text(found.passing)
+      : !turn.uneven.empty()     ? uneven_text(turn.uneven)
+      : !turn.timed.empty()      ? timed_text(turn.timed)
+      : !turn.commanding.empty() ? commanding_text(turn.commanding)
+      : !turn.narrow.empty()
+          ? "The load '" + turn.narrow + "' acts in a narrow part of a turn: this state is steady beside it alone."
+      : slides(c.dynamics(), state)
+          ? "Hinges slide and what acts on the free coordinates changes on the way: this state is steady "
+            "at this place alone."
+          : "The hinges turn and what acts on the free coordinates turns with them (gravity in the plane "
+            "of rotation, as a rule): this state is steady at this angle alone.";
   return found;
 }
 

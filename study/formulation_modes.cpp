@@ -16,7 +16,9 @@ void look_further(const Prepared& base, Registry& registry, const ModesQuestion&
   Configuration c(base, question.start ? question.start(base) : base.scene.initial, question.holding);
   if (at.steady) c.set_state(at.steady->steady.state);
   if (question.masses) found.masses = effective_masses(c);
-  if (!question.damp.empty()) found.damping = mounted_damping(c, registry, question.damp);
+  if (question.damp.empty()) return;
+  found.damping = mounted_damping(c, registry, question.damp);
+  found.damping->frozen = at.frozen();
 }
 
 }  // namespace

@@ -84,7 +84,10 @@ double FrequencyStudy::reference_frequency(const std::string& name, double value
   if (!frequency)
     throw InputError(fmt::format("the reference ({}, {} modes) has no stable mode of '{}' at {} = {}{}",
                                  reference_.formulation, reference_.modes, name, question_.sweep.path, value,
-                                 found.problem.empty() ? "" : ": " + found.problem));
+                                 !found.problem.empty() ? ": " + found.problem
+                                 : found.frozen()       ? ": the equations change over a turn or with time, and modes "
+                                                          "of one frozen angle may grow where a whole turn is stable"
+                                                        : ""));
   return *frequency;
 }
 
@@ -95,6 +98,12 @@ double FrequencyStudy::error(const Point& point, const std::string& name, double
   if (known == found_.end()) known = found_.emplace(key, find(point, value)).first;
   const auto frequency = frequency_of(known->second, name);
   return frequency ? std::abs(*frequency / truth - 1) : std::numeric_limits<double>::infinity();
+}
+
+std::optional<double> FrequencyStudy::frozen_from() const {
+  for (const auto& [value, at] : references_)
+    if (at.frozen()) return value;
+  return {};
 }
 
 double FrequencyStudy::reference_error() {

@@ -38,6 +38,9 @@ class FrequencyStudy {
   /// Of the reference [rad/s].
   double reference_frequency(const std::string& name, double value);
   [[nodiscard]] const Point& reference() const { return reference_; }
+  /// The least value of those looked at where the reference's equations of small motions change as hinges turn: its
+  /// frequencies there are those of one angle. Nothing where they do at none.
+  [[nodiscard]] std::optional<double> frozen_from() const;
   /// The greatest error of the named frequencies of the reference with one mode less, at the sweep's ends.
   double reference_error();
 

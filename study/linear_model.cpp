@@ -7,14 +7,14 @@
 
 #include "withy/core/analysis/steady_state.hpp"
 #include "withy/core/analysis/turn.hpp"
-#include "withy/core/model/switched_load.hpp"
-#include "withy/core/plugin/changing_law.hpp"
 #include "withy/study/linear_inputs.hpp"
 #include "withy/study/linear_outputs.hpp"
 #include "withy/study/linear_parts.hpp"
+#include "withy/study/narrow_loads.hpp"
 #include "withy/study/sampled_steady.hpp"
 #include "withy/study/timed_loads.hpp"
 #include "withy/study/turning.hpp"
+#include "withy/study/turning_ends.hpp"
 
 namespace withy::study {
 namespace {
@@ -35,28 +35,34 @@ std::string quoted_list(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Loads that act and whose gain is that of an instant.
-std::vector<std::string> changing_loads(const Configuration& c) {
-  std::vector<std::string> names;
-  const std::vector<LoadNode>& loads = c.prepared().model().loads();
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    const BoundLoad* load = loads[i].load.get();
-    if (const auto* forms = dynamic_cast<const LoadOfForms*>(load)) {
-      for (const LoadSlot& slot : c.layout().discrete_slots)
-        if (slot.load == i) load = forms->acting(std::span(c.state().y).subspan(slot.first, slot.count));
-    }
-    const auto* law = dynamic_cast<const ChangingLaw*>(load);
-    if (law != nullptr && law->changes_gain()) names.push_back(loads[i].name);
-  }
-  return names;
+/// Whether motions move their hinges: what begins to move is where it is.
+bool motions_move(const Configuration& c) {
+  const std::vector<MotionNode>& motions = c.prepared().model().motions();
+  return std::any_of(motions.begin(), motions.end(),
+                     [&](const MotionNode& node) { return node.motion->at(c.state().time).rate != 0; });
+}
+
+/// Whether A is that of one angle, however what is free is balanced.
+bool is_of_one_angle(TurnCheck turn) {
+  turn.steady = true;
+  return turn.periodic();
 }
 
 /// Loads by which time changes A. What goes in is as the state has it, whatever a run is given later.
-std::vector<std::string> shaking_loads(const Configuration& c, const Turning& turning) {
-  std::vector<std::string> names = timed_loads(c, c.state(), turning).shaking;
+std::vector<std::string> without_inputs(const Configuration& c, std::vector<std::string> names) {
   for (const LoadNode& node : c.prepared().model().loads())
     if (node.load->input() != nullptr) names.erase(std::remove(names.begin(), names.end(), node.name), names.end());
   return names;
+}
+
+/// What of inputs and outputs is that of one instant, where A is not.
+void look_at_ends(const Configuration& c, SmallMotions& motions, const std::vector<LinearInput>& inputs,
+                  const std::vector<LinearOutput>& outputs, const std::vector<std::string>& names,
+                  const StatesToCome& states, LinearModel& linear) {
+  EndsToCome ends = ends_to_come(c, motions, inputs, outputs, names, states);
+  linear.turning_inputs = std::move(ends.inputs), linear.turning_outputs = std::move(ends.outputs);
+  linear.timed_outputs = std::move(ends.timed), linear.moving_outputs = std::move(ends.moving);
+  linear.frozen = !(linear.turning_inputs.empty() && linear.turning_outputs.empty() && linear.timed_outputs.empty());
 }
 
 /// C, D of the outputs in continuous time, and by what is held (columns after those of the states).
@@ -101,7 +107,7 @@ void look(SmallMotions& motions, const SampledLoads& sampled, const std::vector<
 
 }  // namespace
 
-LinearModel about(const Configuration& c, const SmallMotions& motions, const SampledLoads& sampled) {
+About about(const Configuration& c, const SmallMotions& motions, SampledLoads& sampled) {
   LinearModel linear;
   linear.states = motions.names();
   linear.states.insert(linear.states.end(), sampled.names().begin(), sampled.names().end());
@@ -109,11 +115,21 @@ LinearModel about(const Configuration& c, const SmallMotions& motions, const Sam
   for (const Eigen::Index s : motions.free())
     linear.accelerations.emplace_back(c.layout().speed_names[static_cast<std::size_t>(s)], motions.accelerations()[s]);
   linear.changing = changing_loads(c);
-  const TurnCheck turn = check_turn(c.dynamics(), c.state(), c.held());
-  if (!turn.periodic()) linear.shaking = shaking_loads(c, turn.turning);
-  linear.frozen = turn.periodic() || !linear.shaking.empty();
-  linear.equilibrium = at_rest(c) && is_steady(c) && uneven_motions(c.dynamics(), c.state(), c.held()).empty();
-  return linear;
+  TurnCheck turn = check_turn(c.dynamics(), c.state(), c.held());
+  meet_narrow_loads(c, c.state(), turn);
+  const TimedLoads timed = timed_loads(c, c.state(), turn.turning);
+  const bool turns = is_of_one_angle(turn);
+  if (!turns) linear.shaking = without_inputs(c, timed.shaking);
+  const std::vector<std::size_t> uneven = uneven_motions(c.dynamics(), c.state(), c.held());
+  StatesToCome states(c, motions, turn.turning, !timed.pushing.empty() || !uneven.empty(),
+                      uneven.empty() || motions_move(c));
+  if (!turns && linear.shaking.empty()) {
+    SampledToCome to_come = sampled_to_come(c, motions, sampled, states);
+    linear.shaking = std::move(to_come.shaking), linear.turning_loads = std::move(to_come.turning);
+  }
+  linear.frozen = turns || !linear.shaking.empty() || !linear.turning_loads.empty();
+  linear.equilibrium = at_rest(c) && is_steady(c) && uneven.empty();
+  return {std::move(linear), std::move(states)};
 }
 
 void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearModel& linear) {
@@ -131,13 +147,39 @@ void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearM
 }
 
 std::string note_of_frozen(const LinearModel& linear) {
+  constexpr const char* one_instant = "these are those of one instant and tell no stability";
   if (!linear.frozen) return {};
-  return linear.shaking.empty()
-             ? "the equations change as hinges move: these are those of one instant and tell no stability (withy modes "
-               "--floquet looks at a whole turn)"
-             : shaking_text(linear.shaking) +
-                   ": these are those of one instant and tell no stability (withy modes --floquet with --period looks "
-                   "at a period after which everything repeats)";
+  if (!linear.shaking.empty())
+    return fmt::format("{}: {} (withy modes --floquet with --period looks at a period after which everything repeats)",
+                       shaking_text(linear.shaking), one_instant);
+  const auto text = [&](const std::vector<std::string>& names, const char* verb, const char* singular, const char* as,
+                        const char* remedy) {
+    if (names.empty()) return std::string();
+    return fmt::format(
+        "what {} {} small motions changes as {}: this is the response of one instant, none to a frequency "
+        "that goes on, and tells no stability{}",
+        quoted_list(names), names.size() > 1 ? verb : singular, as, remedy);
+  };
+  std::string all;
+  for (const std::string& note :
+       {text(linear.turning_loads, "make of", "makes of", "hinges move", ""),
+        text(linear.turning_inputs, "do to", "does to", "hinges move",
+             " (a force that turns with its frame, following: true, has one)"),
+        text(linear.turning_outputs, "show of", "shows of", "hinges move",
+             " (an output in axes that turn too, in: own or in: a frame that turns, has one)"),
+        text(linear.timed_outputs, "show of", "shows of", "time goes on", "")})
+    if (!note.empty()) all += (all.empty() ? "" : "; ") + note;
+  if (!all.empty()) return all;
+  return fmt::format(
+      "the equations change as hinges move: {} (withy modes --floquet looks at a whole "
+      "turn)",
+      one_instant);
+}
+
+std::string note_of_moving(const LinearModel& linear) {
+  if (linear.frozen || linear.moving_outputs.empty()) return {};
+  return fmt::format("{} {} as hinges or time go on: this is the response of deviations from that",
+                     quoted_list(linear.moving_outputs), linear.moving_outputs.size() > 1 ? "move" : "moves");
 }
 
 std::string note_of_changing(const LinearModel& linear, double time) {
@@ -152,7 +194,8 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
   SmallMotions motions(c, sensors ? c.prepared().scene.outputs : std::vector<SensorNode>());
   const std::vector<LinearInput> inputs = chosen_inputs(c, motions, ports.inputs);
   SampledLoads sampled(motions);
-  LinearModel linear = about(c, motions, sampled);
+  auto [linear, states] = about(c, motions, sampled);
+  if (!linear.frozen) look_at_ends(c, motions, inputs, outputs, ports.outputs, states, linear);
   look(motions, sampled, inputs, outputs, linear);
   Eigen::MatrixXd efforts(motions.by_effort().cols(), static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t k = 0; k < inputs.size(); ++k) {

@@ -23,9 +23,17 @@ struct LinearModel {
   LinearSystem system;
   std::vector<std::pair<std::string, double>> accelerations;  ///< of the free speeds at the state
   bool equilibrium = false;                                   ///< nothing that is free moves or begins to
-  /// A is that of one instant and tells no stability: it changes as hinges go on that move, or as time does by itself.
+  /// The model is that of one instant and tells no stability: A, B, C or D changes as hinges go on that move, or as
+  /// time does by itself.
   bool frozen = false;
-  std::vector<std::string> shaking;   ///< loads by which time changes A, where no hinge does that moves; no inputs
+  std::vector<std::string> shaking;  ///< loads by which time changes A, where no hinge does that moves; no inputs
+  /// Where neither changes A between samples: sampled loads, and loads whose loop is opened, of which what they make of
+  /// small motions changes as hinges go on.
+  std::vector<std::string> turning_loads;
+  std::vector<std::string> turning_inputs;   ///< where A does not change: what they do to small motions does
+  std::vector<std::string> turning_outputs;  ///< the same: what they show of small motions
+  std::vector<std::string> timed_outputs;    ///< the same: time by itself changes what they show of small motions
+  std::vector<std::string> moving_outputs;   ///< their values move, by hinges that go on or by time
   std::vector<std::string> changing;  ///< loads whose gain changes with time by itself: it is that at the state's time
   std::string derivatives;            ///< how A was found
   std::string output_derivatives;     ///< how C and D were
@@ -48,6 +56,8 @@ LinearModel linear_model(const Configuration& configuration, const Ports& ports)
 
 /// What is to be known where A is that of one instant, a sentence without a full stop; empty elsewhere.
 std::string note_of_frozen(const LinearModel& linear);
+/// The same where outputs move by themselves, and what is told is of deviations from that.
+std::string note_of_moving(const LinearModel& linear);
 /// The same where loads change their gain. \param time [s] of the state
 std::string note_of_changing(const LinearModel& linear, double time);
 

@@ -23,6 +23,9 @@ struct MountedDamping {
   std::vector<Change> changes;
   /// Loads damp a mode more than was asked by themselves: [index of the mode].
   std::vector<std::size_t> beyond;
+  /// The equations of small motions change as hinges turn, or with time: all this is at one angle, where bodies that
+  /// are equal need not be given the same.
+  bool frozen = false;
 };
 
 /// Ratios z_bk ≥ 0 of the bodies' own modes (BodyDamping::ratios) such that the lowest undamped modes φ of the free

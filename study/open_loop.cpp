@@ -10,6 +10,7 @@
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/linear_parts.hpp"
+#include "withy/study/turning_ends.hpp"
 
 namespace withy::study {
 namespace {
@@ -185,7 +186,13 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
     answer = answer_of(c, all.slopes, name, hinge);
     push = motions.by_effort() * answer.along;
   }
-  LinearModel linear = about(c, motions, sampled);
+  auto [linear, states] = about(c, motions, sampled);
+  const bool known =
+      std::find(linear.changing.begin(), linear.changing.end(), model.loads()[load].name) != linear.changing.end();
+  if (!linear.frozen && !is_sampled && !known && load_changes(motions, states, load)) {
+    linear.turning_loads = {model.loads()[load].name};
+    linear.frozen = true;
+  }
   linear.inputs = {{name, answer.unit}};
   linear.outputs = {{"-" + name, answer.unit}};
   linear.output_values = {is_command

@@ -151,6 +151,14 @@ std::pair<double, double> ends(const ResponseQuestion& question, const TransferF
   return {low, high};
 }
 
+void find_margins(const TransferFunction& G, Response& r) {
+  try {
+    r.margins = margins(G, r.values, r.roots.hidden, r.integrators > 0 ? std::optional<double>() : r.static_gain);
+  } catch (const std::domain_error&) {  // the closed loop is not well posed
+    r.margins.reset();
+  }
+}
+
 /// What a command line refuses before it is read, for those who ask otherwise.
 void check(const ResponseQuestion& question) {
   constexpr int least = 5, most = 100000;
@@ -187,11 +195,8 @@ Response response(const Configuration& c, const ResponseQuestion& question) {
   r.values = frequency_response(G, low, high, question.per_decade, marks);
   clear_half_rate(r);
   r.peaks = peaks(G, r.values, r.roots.poles);
-  try {
-    r.margins = margins(G, r.values, r.roots.hidden, r.integrators > 0 ? std::optional<double>() : r.static_gain);
-  } catch (const std::domain_error&) {
-    r.margins.reset();
-  }
+  // Of equations that change, one instant tells no stability: there is nothing to be far from.
+  if (!r.model.frozen) find_margins(G, r);
   if (!question.reduce) return r;
   r.reduction = balanced_truncation(s, *question.reduce);
   const TransferFunction smaller(r.reduction->system);

@@ -40,7 +40,7 @@ struct Response {
   std::vector<double> participation;
   std::vector<ResponseAt> values;
   std::vector<Peak> peaks;
-  std::optional<Margins> margins;  ///< of the loop v = −k y; nothing where that is not well posed
+  std::optional<Margins> margins;  ///< of the loop v = −k y; nothing where that is not well posed, or frozen
   std::optional<Reduction> reduction;
   double reduction_error = 0;  ///< greatest difference of the reduced system over `values`
 };

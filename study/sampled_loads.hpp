@@ -39,6 +39,8 @@ class SampledLoads {
   }
   /// The columns of E that belong to a load.
   [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> held_by(std::size_t load) const;
+  /// What is held after an instant at which all are renewed, from a state as SmallMotions::state().
+  [[nodiscard]] Eigen::VectorXd renewed(const State& before) { return renewed(before, before, due_.front()); }
   /// Whether other sampled loads are renewed with what a load holds, directly and not by what it makes others do.
   [[nodiscard]] bool measured_by_others(std::size_t load);
   /// By how much it does.

@@ -66,6 +66,7 @@ Thresholds of_frequencies(const Prepared& base, Registry& registry, const Freque
   found.reference = study.reference().formulation;
   found.reference_modes = study.reference().modes;
   found.reference_error = study.reference_error();
+  found.frozen_from = study.frozen_from();
   return found;
 }
 

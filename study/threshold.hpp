@@ -26,6 +26,8 @@ struct Thresholds {
   std::string reference;  ///< formulation
   int reference_modes = 0;
   double reference_error = 0;  ///< its own, relative
+  /// Of frequencies: the least value at which they are those of one angle, since the equations change over a turn.
+  std::optional<double> frozen_from;
 };
 
 /// By the relative error of whole runs: every value of the range is a trade, and what lies between is looked at where

@@ -7,19 +7,6 @@
 namespace withy::study {
 namespace {
 
-/// Times after a state [s] at which a load is looked at: near ones, for what is fast, and ones all over the rest of the
-/// run, in no ratio to each other, for what begins late or is the same after a period.
-std::vector<double> times_after(const Configuration& c, const State& state) {
-  constexpr int octaves = 20, intervals = 16;
-  constexpr double without_end = 100;
-  const double left = c.prepared().scene.end.value_or(state.time) - state.time, span = left > 0 ? left : without_end;
-  std::vector<double> times;
-  for (int k = 1; k <= octaves; ++k) times.push_back(std::ldexp(span, -k));
-  for (int k = 0; k < intervals; ++k)
-    for (const double share : in_no_ratio) times.push_back(span * (k + share) / intervals);
-  return times;
-}
-
 /// Where everything is some time after the state, with what turns carried on.
 struct Instant {
   double time = 0;  ///< [s]
@@ -102,12 +89,42 @@ class Pushes {
   double greatest_ = 0;  ///< effort of the load that has been met
 };
 
-/// Whether small motions have other equations there, in what is free.
-bool other_equations(const Tangents& a, const Tangents& b, const std::vector<Eigen::Index>& free) {
-  constexpr double differenced = 1e-6;  // of the greatest element: derivatives of some loads are differences
-  const auto differs = [](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
+/// Whether time itself changes the equations of small motions in some of these instants.
+bool small_motions_change(const Configuration& c, const std::vector<Instant>& instants, std::size_t first,
+                          std::size_t end, double share) {
+  constexpr std::size_t every = 3;  // tangents take longer than efforts
+  const std::vector<Eigen::Index> free = free_speeds(c.held());
+  if (free.empty() && c.layout().continuous == 0) return false;
+  const auto at = [&](double t, const State& there) {
+    return c.dynamics().tangents(t, there.y, c.dynamics().steady_accelerations(t));
+  };
+  const double start = instants.front().time;
+  const Tangents now = at(start, instants.front().here);
+  for (std::size_t k = first; k < end; k += every) {
+    const Tangents then = at(instants[k].time, instants[k].here);
+    if (other_equations(now, then, free, share) && other_equations(at(start, instants[k].here), then, free, share))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<double> times_after(const Configuration& c, const State& state) {
+  constexpr int octaves = 20, intervals = 16;
+  constexpr double without_end = 100;
+  const double left = c.prepared().scene.end.value_or(state.time) - state.time, span = left > 0 ? left : without_end;
+  std::vector<double> times;
+  for (int k = 1; k <= octaves; ++k) times.push_back(std::ldexp(span, -k));
+  for (int k = 0; k < intervals; ++k)
+    for (const double share : in_no_ratio) times.push_back(span * (k + share) / intervals);
+  return times;
+}
+
+bool other_equations(const Tangents& a, const Tangents& b, const std::vector<Eigen::Index>& free, double share) {
+  const auto differs = [share](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
     return x.size() > 0 &&
-           (x - y).cwiseAbs().maxCoeff() > differenced * std::max(x.cwiseAbs().maxCoeff(), y.cwiseAbs().maxCoeff());
+           (x - y).cwiseAbs().maxCoeff() > share * std::max(x.cwiseAbs().maxCoeff(), y.cwiseAbs().maxCoeff());
   };
   const auto rows = [&](const Eigen::MatrixXd& m) { return Eigen::MatrixXd(m(free, Eigen::all)); };
   const auto columns = [&](const Eigen::MatrixXd& m) { return Eigen::MatrixXd(m(Eigen::all, free)); };
@@ -120,29 +137,8 @@ bool other_equations(const Tangents& a, const Tangents& b, const std::vector<Eig
          differs(columns(a.rate_by_speed), columns(b.rate_by_speed)) || differs(a.rate_by_state, b.rate_by_state);
 }
 
-/// Whether time itself changes the equations of small motions in some of these instants.
-bool small_motions_change(const Configuration& c, const std::vector<Instant>& instants, std::size_t first,
-                          std::size_t end) {
-  constexpr std::size_t every = 3;  // tangents take longer than efforts
-  const std::vector<Eigen::Index> free = free_speeds(c.held());
-  if (free.empty() && c.layout().continuous == 0) return false;
-  const auto at = [&](double t, const State& there) {
-    return c.dynamics().tangents(t, there.y, c.dynamics().steady_accelerations(t));
-  };
-  const double start = instants.front().time;
-  const Tangents now = at(start, instants.front().here);
-  for (std::size_t k = first; k < end; k += every) {
-    const Tangents then = at(instants[k].time, instants[k].here);
-    if (other_equations(now, then, free) && other_equations(at(start, instants[k].here), then, free)) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
 TimedLoads timed_loads(const Configuration& c, const State& state, const Turning& turning) {
-  // Where a load pushes, soon after: far from where a law is by then, a controller is at its limit.
-  constexpr std::size_t soon = 8, up_to = 21;  // of the octaves
+  constexpr std::size_t soon = first_soon + 1, up_to = end_of_soon + 1;  // the state itself is the first instant
   const std::vector<Instant> instants = instants_after(c, state, turning, times_after(c, state));
   Pushes pushes(c, instants);
   TimedLoads found;
@@ -154,7 +150,8 @@ TimedLoads timed_loads(const Configuration& c, const State& state, const Turning
   }
   const bool calm = found.pushing.empty();
   // A displacement is finite: what it makes of a load's square is nothing to small motions.
-  if (!found.shaking.empty() && !small_motions_change(c, instants, calm ? 1 : soon, calm ? instants.size() : up_to))
+  if (!found.shaking.empty() && !small_motions_change(c, instants, calm ? 1 : soon, calm ? instants.size() : up_to,
+                                                      calm ? differenced_equations : pushed_equations))
     found.shaking.clear();
   return found;
 }

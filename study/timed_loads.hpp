@@ -24,6 +24,24 @@ struct TimedLoads {
 /// the angle alone does, as weight.
 TimedLoads timed_loads(const Configuration& configuration, const State& state, const Turning& turning);
 
+/// Times after a state [s] at which what may change with time is looked at: near ones, for what is fast, the longest
+/// first, and ones all over the rest of the run, in no ratio to each other, for what begins late or is the same after a
+/// period.
+std::vector<double> times_after(const Configuration& configuration, const State& state);
+/// Of these (indices, the end excluded) those at which small motions are looked at where a load pushes: far from where
+/// a law is by then, a controller is at its limit.
+inline constexpr std::size_t first_soon = 7, end_of_soon = 20;
+
+/// Of the greatest element: derivatives of some loads are differences.
+inline constexpr double differenced_equations = 1e-6;
+/// Where a load pushes with time, as a controller whose reference moves: what its limit, which is smooth, makes of that
+/// by then is no change of the law with time.
+inline constexpr double pushed_equations = 1e-4;
+
+/// Whether small motions have other equations there than here, in what is free. \param share of the greatest element
+bool other_equations(const Tangents& here, const Tangents& there, const std::vector<Eigen::Index>& free,
+                     double share = differenced_equations);
+
 /// The state with everything that is free displaced and moving, no two alike: what a load makes of it shows in its
 /// effort, also where it makes nothing of the state itself.
 State displaced_anyhow(const Configuration& configuration, State state);

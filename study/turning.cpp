@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <stdexcept>
 
 #include "withy/core/analysis/between_instants.hpp"
 #include "withy/core/model/columns.hpp"
+#include "withy/study/narrow_loads.hpp"
 #include "withy/study/timed_loads.hpp"
+#include "withy/study/turning_ends.hpp"
 
 namespace withy::study {
 namespace {
@@ -28,6 +31,21 @@ FloquetModes floquet_of(const TurningForm& form, const Configuration& c) {
   return modes;
 }
 
+/// How many waves the pattern of a mode has round the rotor, less those that run backward: shares of kinetic energy.
+double waves_of(const MultibladeForm& form, const CharacteristicMode& mode) {
+  const std::complex<double> i(0, 1);
+  double all = 0, turning = 0;
+  for (Eigen::Index k = 0; k < form.masses.size(); ++k) {
+    const MultibladeCoordinate& c = form.coordinates[static_cast<std::size_t>(k)];
+    const double mass = std::abs(form.masses[k]);
+    all += mass * std::norm(mode.shape[k]);
+    if (c.kind != MultibladeCoordinate::Kind::cosine) continue;
+    const std::complex<double> cosine = mode.shape[k], sine = mode.shape[c.partner];
+    turning += 0.5 * mass * c.order * (std::norm(cosine + i * sine) - std::norm(cosine - i * sine));
+  }
+  return all > 0 ? turning / all : 0.0;
+}
+
 /// The first group of equal branches that turns; throws where there is none.
 BladeModes blades_of(const TurningForm& form, const Configuration& c, const std::vector<std::string>& names) {
   const std::vector<Blades> groups = equal_branches(c.prepared().model(), names);
@@ -39,11 +57,13 @@ BladeModes blades_of(const TurningForm& form, const Configuration& c, const std:
       BladeModes found;
       found.blades = seen.blades.names;
       found.change = seen.A.change();
+      found.rate = 2 * std::numbers::pi / seen.A.period();
       found.masses = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(seen.coordinates.size()));
       found.masses.head(seen.masses.size()) = seen.masses.cwiseAbs();
       for (const CharacteristicMode& mode : constant_modes(seen.A.mean(), seen.masses)) {
         found.modes.push_back(named(mode, pattern(seen, mode)));
         found.shapes.push_back(mode.shape);
+        found.waves.push_back(waves_of(seen, mode));
       }
       return found;
     } catch (const std::domain_error& e) {
@@ -133,6 +153,21 @@ std::string not_repeating(const Configuration& c, const State& steady, const Tur
   return {};
 }
 
+/// Adds what becomes of what loads sample, which `check_turn` takes for held.
+void meet_sampled_loads(const Configuration& c, const State& steady, double period, TurningModes& result) {
+  if (!c.sampled()) return;
+  SampledToCome to_come = sampled_to_come(c, steady, result.check.turning, !result.timed.empty(), period);
+  const auto add = [](std::vector<std::string>& names, const std::vector<std::string>& more) {
+    for (const std::string& name : more)
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  if (!to_come.moving.empty()) result.check.steady = false;
+  if (!to_come.turning.empty()) result.check.constant = false;
+  add(result.timed, to_come.timed), add(result.shaking, to_come.shaking);
+  result.commanding = std::move(to_come.moving);
+  result.sampled = std::move(to_come.turning);
+}
+
 /// Whether hinges move at rates or as motions drive them.
 bool turns(const Model& model, const Turning& turning) {
   const std::vector<MotionNode>& motions = model.motions();
@@ -159,11 +194,13 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
     if (wish.period == 0)
       for (const std::size_t m : uneven_motions(c.dynamics(), steady, c.held()))
         result.uneven.push_back(c.prepared().model().motions()[m].name);
-    if (!result.check.steady) result.passing = moving_freely(c, steady);
+    result.narrow = meet_narrow_loads(c, steady, result.check);
     if (wish.period == 0) {
       TimedLoads timed = timed_loads(c, steady, result.check.turning);
       result.timed = std::move(timed.pushing), result.shaking = std::move(timed.shaking);
     }
+    meet_sampled_loads(c, steady, wish.period, result);
+    if (!result.check.steady) result.passing = moving_freely(c, steady);
     result.turns = turns(c.prepared().model(), result.check.turning);
     if (!wish.floquet && !wish.blades) return result;
     const Turning& turning = result.check.turning;
@@ -187,7 +224,8 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
           load, turning.period);
       return result;
     }
-    const TurningForm form = turning_form(c.dynamics(), steady, c.held(), turning);
+    const std::size_t least = instants_of_loads(c, steady, turning);
+    const TurningForm form = turning_form(c.dynamics(), steady, c.held(), turning, static_cast<Eigen::Index>(least));
     result.moves = !form.turn.constant;
     result.greatest_displacement = greatest_displacement(form.turn, c);
     if (wish.floquet) result.floquet = floquet_of(form, c);
@@ -259,7 +297,32 @@ std::string shaken_text(const TurnCheck& check) {
       check.steady ? "" : ", and this state is balanced at this instant alone");
 }
 
+/// Of what the comparison of masses, stiffnesses and what depends on speeds at some angles does not show; else empty.
+std::string text_of_few(const TurningModes& turn) {
+  if (!turn.check.periodic()) return {};
+  if (!turn.sampled.empty())
+    return fmt::format(
+        "What the sampled load{} '{}' make{} of small motions changes as the hinges turn{}: these are those of one "
+        "frozen angle.",
+        turn.sampled.size() > 1 ? "s" : "", fmt::join(turn.sampled, "', '"), turn.sampled.size() > 1 ? "" : "s",
+        turn.check.steady ? "" : ", and this state is balanced at this angle alone");
+  if (!turn.commanding.empty()) return commanding_text(turn.commanding);
+  if (!turn.narrow.empty())
+    return fmt::format(
+        "The load '{}' acts in a narrow part of a turn{}: these are small motions beside it. --floquet looks at the "
+        "whole turn.",
+        turn.narrow, turn.check.steady ? "" : ", and this state is balanced at some angles alone");
+  return {};
+}
+
 }  // namespace
+
+std::string commanding_text(const std::vector<std::string>& loads) {
+  return fmt::format(
+      "The hinges turn and what the sampled load{} '{}' command{} turns with them: this state is steady at this angle "
+      "alone.",
+      loads.size() > 1 ? "s" : "", fmt::join(loads, "', '"), loads.size() > 1 ? "" : "s");
+}
 
 std::string turn_text(const TurningModes& turn) {
   constexpr const char* no_stability = " Growth and decay are those of this instant and tell no stability.";
@@ -272,6 +335,7 @@ std::string turn_text(const TurningModes& turn) {
     return fmt::format(
         "At this state {}.{}{}", shaking_text(turn.shaking), no_stability,
         turn.floquet ? "" : " --floquet with --period looks at a period after which everything repeats.");
+  if (const std::string text = text_of_few(turn); !text.empty()) return text + no_stability;
   if (!turning.problem.empty())
     return check.periodic()
                ? fmt::format(

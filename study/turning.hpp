@@ -37,7 +37,10 @@ struct BladeModes {
   std::vector<NamedMode> modes;     ///< of the equations averaged over a turn
   /// Of each mode: displacements in multi-blade coordinates, then states of loads; what dominates is 1.
   std::vector<Eigen::VectorXcd> shapes;
-  Eigen::VectorXd masses;             ///< that weigh shapes; zero for the states of loads
+  Eigen::VectorXd masses;  ///< that weigh shapes; zero for the states of loads
+  double rate = 0;         ///< of the rotor [rad/s]
+  /// Of each mode the waves of its pattern round the rotor, weighed by kinetic energy; below 0 where it runs backward.
+  std::vector<double> waves;
   std::vector<std::size_t> branches;  ///< along a sweep, of each mode; empty where nobody followed them
   double change = 0;                  ///< what the average leaves out: greatest change of an element, of the greatest
 };
@@ -59,6 +62,12 @@ struct TurningModes {
   std::vector<std::string> timed;
   /// Those that change the equations of small motions, where no period is given: growth and decay are of one instant.
   std::vector<std::string> shaking;
+  /// Sampled loads whose commands at the state change as hinges turn, so that it is balanced at one angle alone.
+  std::vector<std::string> commanding;
+  /// Sampled loads of which what they make of small motions does.
+  std::vector<std::string> sampled;
+  /// A load that acts in a narrow part of a turn alone, where all else is constant; empty: there is none.
+  std::string narrow;
   bool turns = false;         ///< hinges move at rates or as motions drive them
   std::string problem;        ///< why there are no exponents; empty where there are
   std::string blade_problem;  ///< why no blades are seen; empty where they are, or nobody asked
@@ -90,6 +99,8 @@ std::string uneven_text(const std::vector<std::string>& motions);
 std::string timed_text(const std::vector<std::string>& loads);
 /// "the load 'base' changes the equations of small motions with time".
 std::string shaking_text(const std::vector<std::string>& loads);
+/// That a state does not stay with sampled loads whose commands change as hinges turn.
+std::string commanding_text(const std::vector<std::string>& loads);
 /// That a state with such hinges does not stay, and what to do.
 std::string passing_text(const std::vector<std::string>& hinges);
 

@@ -136,7 +136,8 @@ Blades ordered(const PeriodicMatrix& A, Eigen::Index m, Blades blades, const Hel
   for (const std::string& name : blades.names) names += (names.empty() ? "" : ", ") + name;
   throw std::domain_error("after 1/" + std::to_string(blades.count()) + " of a turn the rotor is not the same with " +
                           names + " exchanged: they are not equal, not equally spaced, or not all of the blades" +
-                          (A.rows() > 2 * m ? ", or each has a controller of its own" : ""));
+                          (A.rows() > 2 * m ? ", or each has a controller of its own" : "") +
+                          ", or another hinge turns too, and the turn is that after which both come back");
 }
 
 /// Columns of the transform of one coordinate of B blades at angle ψ, and their derivatives with respect to ψ.

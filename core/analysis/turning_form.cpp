@@ -84,12 +84,12 @@ std::string why_not(Eigen::Index instants, const Missed& missed) {
 
 }  // namespace
 
-TurningForm turning_form(const TangentDynamics& dynamics, const State& start, const Held& held,
-                         const Turning& turning) {
+TurningForm turning_form(const TangentDynamics& dynamics, const State& start, const Held& held, const Turning& turning,
+                         Eigen::Index least) {
   const std::vector<Eigen::Index> free = free_speeds(held);
   const auto m = static_cast<Eigen::Index>(free.size());
   double before = std::numeric_limits<double>::infinity();
-  for (Eigen::Index count = 15;; count = 2 * count + 1) {
+  for (Eigen::Index count = least;; count = 2 * count + 1) {
     Turn turn = find_turn(dynamics, start, held, turning, count);
     const Eigen::VectorXd units = balance_of_states(whole_first_order_form(turn.points[0], held).A, 2 * m);
     std::vector<Eigen::MatrixXd> samples;

@@ -1,0 +1,184 @@
+#include "withy/study/narrow_loads.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "withy/study/timed_loads.hpp"
+
+namespace withy::study {
+namespace {
+
+constexpr int fine_angles = 719, finer_angles = 4127;  // primes: nothing repeats with them
+/// What counts as rounding, of an effort's greatest size and of the greatest of all.
+constexpr double effort_rounding = 1e-9, effort_rounding_of_all = 1e-12;
+/// A mean error of this share of the greatest is seen by nobody.
+constexpr double unseen_share = 1e-3;
+
+/// Efforts of loads on the free speeds, a column an angle: at the states, then what a displacement makes of them.
+class EffortsOverATurn {
+ public:
+  EffortsOverATurn(const Configuration& c, const State& steady, const Turning& turning, double over)
+      : c_(c),
+        steady_(steady),
+        turning_(turning),
+        over_(over),
+        free_(free_speeds(c.held())),
+        work_(c.prepared().equations->make_work()) {}
+
+  [[nodiscard]] State at(double share) const {
+    return carried(c_.prepared().model(), turning_, steady_, over_ * share);
+  }
+  /// At a state and a time [s], of one load or all: efforts, then what a displacement makes of them.
+  [[nodiscard]] Eigen::VectorXd of(const State& state, double time, int load = EquationsOfMotion::all_loads) {
+    const auto m = static_cast<Eigen::Index>(free_.size());
+    Eigen::VectorXd both(2 * m);
+    both.head(m) = efforts(time, state, load);
+    both.tail(m) = efforts(time, displaced_anyhow(c_, state), load) - both.head(m);
+    return both;
+  }
+  /// A column an angle.
+  [[nodiscard]] Eigen::MatrixXd all(int angles) {
+    Eigen::MatrixXd columns(2 * static_cast<Eigen::Index>(free_.size()), angles);
+    for (int k = 0; k < angles; ++k) {
+      const State state = at(static_cast<double>(k) / angles);
+      columns.col(k) = of(state, state.time);
+    }
+    return columns;
+  }
+  [[nodiscard]] const std::vector<Eigen::Index>& free() const { return free_; }
+  /// The load that acts most otherwise at a share of the turn than at its start.
+  [[nodiscard]] std::string load_at(double share) {
+    const State there = at(share);
+    std::string name;
+    double most = 0;
+    const std::vector<LoadNode>& loads = c_.prepared().model().loads();
+    for (std::size_t l = 0; l < loads.size(); ++l) {
+      const double change =
+          (of(there, there.time, static_cast<int>(l)) - of(steady_, steady_.time, static_cast<int>(l)))
+              .cwiseAbs()
+              .maxCoeff();
+      if (change > most) most = change, name = loads[l].name;
+    }
+    return name;
+  }
+
+ private:
+  Eigen::VectorXd efforts(double time, const State& state, int load) {
+    std::vector<double> on(c_.layout().speeds);
+    c_.prepared().equations->load_efforts(time, state.y, load, on, work_);
+    return Eigen::Map<const Eigen::VectorXd>(on.data(), static_cast<Eigen::Index>(on.size()))(free_);
+  }
+
+  const Configuration& c_;
+  const State& steady_;
+  const Turning& turning_;
+  double over_;  ///< [s]
+  std::vector<Eigen::Index> free_;
+  Work work_;
+};
+
+/// What counts as rounding of each row.
+Eigen::VectorXd rounding_of_rows(const Eigen::MatrixXd& efforts) {
+  const Eigen::VectorXd greatest = efforts.cwiseAbs().rowwise().maxCoeff();
+  return (effort_rounding * greatest.array() + effort_rounding_of_all * greatest.maxCoeff()).matrix();
+}
+
+/// The trigonometric polynomials through equal instants (an odd count), at other equal ones.
+Eigen::MatrixXd between_equal_instants(const Eigen::MatrixXd& efforts, Eigen::Index angles) {
+  const auto count = static_cast<double>(efforts.cols());
+  Eigen::MatrixXd weights(efforts.cols(), angles);
+  for (Eigen::Index j = 0; j < weights.rows(); ++j) {
+    for (Eigen::Index k = 0; k < angles; ++k) {
+      const double half =
+          std::numbers::pi * (static_cast<double>(k) / static_cast<double>(angles) - static_cast<double>(j) / count);
+      weights(j, k) = std::abs(std::sin(half)) < 1e-14 ? 1.0 : std::sin(count * half) / (count * std::sin(half));
+    }
+  }
+  return efforts * weights;
+}
+
+/// Where, as a share of the period, what equal instants say of an effort is most off, if they do not show it.
+std::optional<double> missed_between(const Eigen::MatrixXd& instants, const Eigen::MatrixXd& fine) {
+  const Eigen::MatrixXd off = (fine - between_equal_instants(instants, fine.cols())).cwiseAbs();
+  const Eigen::VectorXd rounding = rounding_of_rows(fine);
+  for (Eigen::Index row = 0; row < fine.rows(); ++row) {
+    const auto varies = [&](const Eigen::MatrixXd& efforts) {
+      return efforts.row(row).maxCoeff() - efforts.row(row).minCoeff() > rounding[row];
+    };
+    const double size = fine.row(row).cwiseAbs().maxCoeff();
+    if (!varies(fine) || (varies(instants) && off.row(row).mean() <= unseen_share * size + rounding[row])) continue;
+    Eigen::Index most = 0;
+    off.row(row).maxCoeff(&most);
+    return static_cast<double>(most) / static_cast<double>(fine.cols());
+  }
+  return {};
+}
+
+/// [s] a period, or a turn of the hinge that is slowest.
+double looked_over(const Configuration& c, const State& steady, const Turning& turning) {
+  double longest = turning.period;
+  for (const std::size_t s : turning.speeds)
+    if (!(turning.period > 0)) longest = std::max(longest, full_turn / std::abs(steady.y[c.layout().positions + s]));
+  return longest;
+}
+
+}  // namespace
+
+std::string meet_narrow_loads(const Configuration& c, const State& steady, TurnCheck& check) {
+  const double over = looked_over(c, steady, check.turning);
+  if (check.periodic() || over == 0 || c.prepared().model().loads().empty()) return {};
+  EffortsOverATurn turn(c, steady, check.turning, over);
+  const auto m = static_cast<Eigen::Index>(turn.free().size());
+  if (m == 0) return {};
+  const Eigen::MatrixXd efforts = turn.all(fine_angles);
+  const Eigen::VectorXd rounding = rounding_of_rows(efforts), start = efforts.col(0);
+  const auto others = [&](const Eigen::VectorXd& there) -> std::pair<bool, bool> {
+    const Eigen::Array<bool, Eigen::Dynamic, 1> changed = (there - start).array().abs() > rounding.array();
+    return {changed.head(m).any(), changed.tail(m).any()};
+  };
+  std::string name;
+  int left = 8;  // derivatives take long
+  for (int k = 1; k < fine_angles && left > 0; ++k) {
+    const auto [pushes, bends] = others(efforts.col(k));
+    if ((!pushes || !check.steady) && (!bends || !check.constant)) continue;
+    const double share = static_cast<double>(k) / fine_angles;
+    const State there = turn.at(share);
+    // What time alone makes of it is not of the angle.
+    const auto [place_pushes, place_bends] = others(turn.of(there, steady.time));
+    if (pushes && place_pushes) check.steady = false;
+    if (bends && place_bends && check.constant) {
+      --left;
+      const auto tangents = [&](const State& at) {
+        return c.dynamics().tangents(at.time, at.y, c.dynamics().steady_accelerations(at.time));
+      };
+      check.constant = !other_equations(tangents(steady), tangents(there), turn.free());
+    }
+    if (check.periodic() && name.empty()) name = turn.load_at(share);
+  }
+  return name;
+}
+
+std::size_t instants_of_loads(const Configuration& c, const State& steady, const Turning& turning) {
+  constexpr std::size_t fewest = 15, most = 1023;
+  if (c.prepared().model().loads().empty() || !(turning.period > 0) || free_speeds(c.held()).empty()) return fewest;
+  EffortsOverATurn turn(c, steady, turning, turning.period);
+  Eigen::MatrixXd fine = turn.all(fine_angles);
+  double share = 0;
+  for (std::size_t count = fewest; count <= most; count = 2 * count + 1) {
+    if (4 * count > static_cast<std::size_t>(fine.cols())) fine = turn.all(finer_angles);
+    const std::optional<double> missed = missed_between(turn.all(static_cast<int>(count)), fine);
+    if (!missed) return count;
+    share = *missed;
+  }
+  throw std::domain_error(
+      fmt::format("load '{}' acts in so narrow a part of it that {} instants do not show it, and whether small motions "
+                  "grow is not known",
+                  turn.load_at(share), most));
+}
+
+}  // namespace withy::study
