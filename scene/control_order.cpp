@@ -155,8 +155,10 @@ void name_signals(const Document& document, Model* model, SceneNames& names, Reg
       std::any_of(loads.begin(), loads.end(), [](const Value::Member& load) { return measures(load.second); }))
     model->set_measured(measurable(map_of("outputs"), *model, document, names, registry));
   if (model != nullptr && model->measured() != nullptr)
-    for (const SensorNode& node : *model->measured())
+    for (const SensorNode& node : *model->measured()) {
+      if (node.sensor == nullptr) continue;  // one that waits for loads
       for (const Column& c : columns_of(node)) names.units[c.name] = c.unit;
+    }
 }
 
 void give_outputs(Model& model, const std::vector<SensorNode>& outputs, const Checker& checker) {

@@ -20,7 +20,7 @@ namespace withy::study {
 namespace {
 
 /// Whether no mode moves; hinges may turn steadily.
-bool at_rest(const Configuration& c) {
+bool no_mode_moves(const Configuration& c) {
   for (const Slot& slot : c.layout().bodies) {
     for (std::size_t i = 0; i < slot.speeds; ++i) {
       if (c.state().y[c.layout().positions + slot.speed + i] != 0) return false;
@@ -128,7 +128,7 @@ About about(const Configuration& c, const SmallMotions& motions, SampledLoads& s
     linear.shaking = std::move(to_come.shaking), linear.turning_loads = std::move(to_come.turning);
   }
   linear.frozen = turns || !linear.shaking.empty() || !linear.turning_loads.empty();
-  linear.equilibrium = at_rest(c) && is_steady(c) && uneven.empty();
+  linear.equilibrium = no_mode_moves(c) && is_steady(c) && uneven.empty();
   return {std::move(linear), std::move(states)};
 }
 

@@ -293,7 +293,7 @@ TEST_F(SceneValuesTest, NamesOfOutputsThatSayNothingAreReported) {
   EXPECT_THAT(of("boom.tip.distance@hub.aut"), testing::HasSubstr("no frame \"hub.aut\"; did you mean"));
   EXPECT_THAT(of("{shoulder.effort: {type: effort, hinge: root}}"), testing::HasSubstr("got name \"shoulder.effort\""));
   EXPECT_THAT(of("hub.gyro@own"), testing::HasSubstr("names no output"));
-  EXPECT_THAT(of("boom.section@0.1m"), testing::HasSubstr("names no output"));
+  EXPECT_THAT(of("boom.section@0.1m"), testing::HasSubstr("has no place behind the @"));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 
 using test::plugins;
 
-constexpr double length = 2, offset = 0.4, mass = 1, flap_spring = 36;
+constexpr double length = 2, offset = 0.4, blade_mass = 1, flap_spring = 36;
 
 /// Three point masses on rods at a hub, each on a flap and a lag hinge.
 std::string hinged_rotor(double lag_spring) {
@@ -31,7 +31,7 @@ std::string hinged_rotor(double lag_spring) {
                           offset * std::cos(angle), offset * std::sin(angle), angle);
     bodies += fmt::format(
         "  cuff{0}: {{type: rigid, mass: 0}}\n  rod{0}: {{type: rigid, mass: {1}, center_of_mass: [{2}, 0, 0]}}\n", k,
-        mass, length);
+        blade_mass, length);
     hinges += fmt::format(
         "  flap{0}: {{type: revolute, axis: [0, 1, 0], parent: hub.b{0}, child: cuff{0}}}\n"
         "  lag{0}: {{type: revolute, axis: [0, 0, 1], parent: cuff{0}, child: rod{0}}}\n",
@@ -48,10 +48,10 @@ std::string hinged_rotor(double lag_spring) {
 
 /// Frequencies of a hinged blade as it turns with the rotor (Johnson, Helicopter Theory, section 9-1).
 double flapping(double rate) {
-  return std::sqrt(flap_spring / (mass * length * length) + rate * rate * (1 + offset / length));
+  return std::sqrt(flap_spring / (blade_mass * length * length) + rate * rate * (1 + offset / length));
 }
 double lagging(double lag_spring, double rate) {
-  return std::sqrt(lag_spring / (mass * length * length) + rate * rate * offset / length);
+  return std::sqrt(lag_spring / (blade_mass * length * length) + rate * rate * offset / length);
 }
 
 /// That each branch is one of the six motions of blades that flap and lag, at every rate but zero.

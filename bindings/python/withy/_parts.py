@@ -51,7 +51,9 @@ def python_name(key: str) -> str:
 
 def _resolved(of: dict[str, Any], all_: dict[str, Any]) -> dict[str, Any]:
     if "$ref" in of:
-        return {**all_["$defs"][of["$ref"].rpartition("/")[2]], **of}
+        of = {**all_["$defs"][of["$ref"].rpartition("/")[2]], **of}
+    if isinstance(of.get("type"), list):  # a map that may be nothing
+        of = {**of, "type": next(kind for kind in of["type"] if kind != "null")}
     return of
 
 
