@@ -26,7 +26,8 @@ std::string run_command_of(const Plan& plan, const SceneValues& scene, const Cas
   for (const auto& [path, value] : plan.set) add(path, value);
   const std::vector<std::string> paths = varied_paths(plan);
   for (std::size_t a = 0; a < values.size(); ++a)
-    if (values[a]) add(paths[a], *values[a]);
+    if (values[a] && (values[a]->kind() != Value::Kind::null || scene.find(paths[a]) != nullptr))
+      add(paths[a], *values[a]);
   return text;
 }
 

@@ -5,6 +5,7 @@
 
 #include "withy/campaign/derived.hpp"
 #include "withy/campaign/overlaps.hpp"
+#include "withy/campaign/trials.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -67,7 +68,7 @@ CaseValues Cases::of_axes(std::uint64_t index) const {
 
 void Cases::set(SceneValues& scene, const CaseValues& values, const std::string& origin) const {
   for (std::size_t a = 0; a < values.size(); ++a)
-    if (values[a]) scene.set(paths_[a], *values[a], origin);
+    if (values[a]) set_or_take(scene, paths_[a], *values[a], origin);
 }
 
 SceneValues Cases::scene(const CaseValues& values, const std::string& origin) const {

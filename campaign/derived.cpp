@@ -9,6 +9,7 @@
 
 #include "withy/campaign/cases.hpp"
 #include "withy/campaign/overlaps.hpp"
+#include "withy/campaign/trials.hpp"
 #include "withy/core/plugin/formula.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
@@ -114,7 +115,7 @@ void check_derived(const Plan& plan, Registry& registry, Problems& problems) {
   SceneValues values = plan.base->values;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const Place& place = i < plan.axes.size() ? plan.axes[i].place : plan.derived[i - plan.axes.size()].place;
-    if (first[i]) values.set(paths[i], *first[i], origin_of(plan.file, place));
+    if (first[i]) set_or_take(values, paths[i], *first[i], origin_of(plan.file, place));
   }
   try {
     static_cast<void>(make_scene(values, registry));

@@ -29,13 +29,17 @@ bool make(const SceneValues& values, Registry& registry, Problems& problems, Sce
 
 void try_row(SceneValues values, const TrialRow& row, const std::string& plan, Registry& registry,
              SceneSources& sources) try {
-  for (const auto& [path, value] : row) values.set(path, value, plan);
+  for (const auto& [path, value] : row) set_or_take(values, path, value, plan);
   add_sources(values, registry, sources);
 } catch (const SceneError&) {
   // Its cases say what is wrong with them.
 }
 
 }  // namespace
+
+void set_or_take(SceneValues& scene, const std::string& path, const Value& value, const std::string& origin) {
+  if (value.kind() != Value::Kind::null || scene.find(path) != nullptr) scene.set(path, value, origin);
+}
 
 std::string origin_of(const std::string& file, const Place& place) {
   return fmt::format("{}:{}:{}", file, place.line, place.column);
@@ -67,7 +71,7 @@ SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trial
   SceneSources sources;
   if (!make(base, registry, problems, sources)) return sources;
   const auto put = [&](SceneValues& values, const Trial& trial) {
-    values.set(trial.path, trial.value, origin_of(plan, trial.value.place()));
+    set_or_take(values, trial.path, trial.value, origin_of(plan, trial.value.place()));
   };
   SceneValues first = base;
   std::vector<const Trial*> others;

@@ -12,6 +12,9 @@
 
 namespace withy::campaign {
 
+/// Sets a value of a case; `null` takes away what the scene has there, if it has anything.
+void set_or_take(SceneValues& scene, const std::string& path, const Value& value, const std::string& origin);
+
 /// A value that stands in the plan, to be tried at a path of the scene.
 struct Trial {
   std::size_t axis = 0;

@@ -338,6 +338,14 @@ TEST(Cases, ANullLevelTakesAwayWhatTheSceneSays) {
   const Plan alone = damped_plan(folder, vary + "design: one-at-a-time\n");
   EXPECT_FALSE(case_json(alone, run_case(alone, Cases(alone), 0, plugins(), {})).at("values").contains("loads.drag"))
       << "the scene's own stays";
+  // What the scene does not have is as little there: with a second damper, and without.
+  const Plan more =
+      damped_plan(folder, "vary: {loads.more: {grid: [null, {type: hinge-spring, hinge: pivot, damping: 1}]}}\n");
+  const CaseResult one = run_case(more, Cases(more), 0, plugins(), {}),
+                   two = run_case(more, Cases(more), 1, plugins(), {});
+  ASSERT_TRUE(one.completed() && two.completed()) << one.message << two.message;
+  EXPECT_LT(two.numbers[0], one.numbers[0]);
+  EXPECT_THAT(case_json(more, one).at("command").get<std::string>(), testing::Not(testing::HasSubstr("loads.more")));
 }
 
 }  // namespace

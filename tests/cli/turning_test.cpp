@@ -119,7 +119,7 @@ TEST(Turning, ASweepOfARotorsRateFromRestLeavesWhatTheTowerSees) {
   // The page has them too, at each value but that of rest.
   if (const std::string page = folder.read("campbell/report.html"); !page.empty()) {
     EXPECT_THAT(page, HasSubstr("\"dominated_by\":\"blade1.bending_z[1] forward\""));
-    EXPECT_THAT(page, HasSubstr("\"blades\":{\"count\":3,\"branches\":[{\"at\":[null,{"));
+    EXPECT_THAT(page, HasSubstr("\"blades\":{\"count\":3,\"branches\":[{\"number\":1,\"at\":[null,{"));
   }
   // A turn that is no sweep's beginning is asked for in vain, and a value is named.
   EXPECT_EQ(withy(folder, {"modes", "three.yaml", "--floquet"}).status, 1);

@@ -49,7 +49,7 @@ TEST_P(ReflectedInertia, IsFeltByItsRateAlone) {
 
 /// T as before is the `energy` of all; that of a body is its own.
 TEST_P(ReflectedInertia, IsPartOfTheEnergyOfAll) {
-  const Case c(disc_and_arm("outputs: {all: {type: energy}, arm: {type: energy, of: arm}}\n"), GetParam());
+  const Case c(disc_and_arm("outputs: {all: {type: energy}, of_arm: {type: energy, of: arm}}\n"), GetParam());
   State s = c.state;
   s.y[2] = 0.3, s.y[3] = -0.8;
   SensorReader reader(c.scene.outputs, *c.equations);

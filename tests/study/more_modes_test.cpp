@@ -111,7 +111,7 @@ TEST(MoreModesOfARun, AreNotComparedWhereLoadsSwitch) {
   values.set("time.end", Value(0.5), "the test");
   const MoreModesOutcome outcome = certified(values).certificate.more_modes;
   EXPECT_FALSE(outcome.more);
-  EXPECT_THAT(outcome.why_not, HasSubstr("loads switch"));
+  EXPECT_THAT(outcome.why_not, HasSubstr("load 'jets' switches at zeros of a function of the state"));
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ async function check_lines_of_the_rate(browser, folder, run, troubles) {
     const out = join(folder, `rates${rates.replaceAll(/[ :]/g, '_')}`);
     run('modes', join(scenes, 'rotating-blade.yaml'), '--sweep', `spin.axle=${rates}`, '--out', out);
     const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
-    const frame = await page.locator('#campbell rect.frame').evaluate(e => e.getBBox());
+    const frame = await page.locator('#campbell rect.frame').evaluate(e => { const { x, y, width, height } = e.getBBox(); return { x, y, width, height }; });
     const lines = await page.locator('#campbell path.harmonic').evaluateAll(all => all.map(e => { const b = e.getBBox(); return [b.x, b.y, b.x + b.width, b.y + b.height]; }));
     assert.equal(lines.length, 4 * sides, rates);
     for (const [left, top, right, foot] of lines)
