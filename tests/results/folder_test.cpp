@@ -117,7 +117,8 @@ TEST(ResultsFolder, FilesOfUnknownOriginAreLeftAlone) {
 TEST(ResultsFolder, ARecordOfAnotherProgramIsLeftAlone) {
   const Scratch scratch;
   scratch.write("out/result.json", "{\"mine\": \"measurements\"}");
-  EXPECT_THAT(refusal(scratch / "out", "run", origin()), HasSubstr("holds result.json, and nothing says of what result"));
+  EXPECT_THAT(refusal(scratch / "out", "run", origin()),
+              HasSubstr("holds result.json, and nothing says of what result"));
   EXPECT_EQ(scratch.read("out/result.json"), "{\"mine\": \"measurements\"}");
   scratch.write("out/result.json", "{\"format\": \"withy-result/1\", \"comm");
   EXPECT_EQ(refusal(scratch / "out", "run", origin()), "") << "one of its own that was cut short";
