@@ -19,7 +19,7 @@
 namespace withy {
 
 /// Version of the interfaces in core/plugin; it changes with any of them.
-#define WITHY_SDK_VERSION 10
+#define WITHY_SDK_VERSION 11
 
 /// A property of the build that host and plugin must share, since C++ objects pass between them.
 struct AbiProperty {

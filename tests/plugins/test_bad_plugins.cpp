@@ -55,7 +55,7 @@ TEST_P(BadPlugin, is_refused_in_its_own_words_and_leaves_the_good_one_working) {
 INSTANTIATE_TEST_SUITE_P(
     zoo, BadPlugin,
     testing::Values(
-        Inhabitant{"abi-0", "its SDK version is foreign, this program's is 10"},
+        Inhabitant{"abi-0", "its SDK version is foreign, this program's is 11"},
         Inhabitant{"abi-1", "its compiler is foreign, this program's is "},
         Inhabitant{"abi-2", "its standard library is foreign, this program's is "},
         Inhabitant{"abi-3", "its debug containers is foreign, this program's is "},
