@@ -282,7 +282,10 @@ class Plate final : public Body {
       }
     }
     const Eigen::HouseholderQR<MatrixXd> qr(fields);
-    MatrixXd R = qr.matrixQR().topRows(fields.cols()).triangularView<Eigen::Upper>();
+    // Many modes of a strip have more fields than nodes: no more functions are independent there.
+    const Eigen::Index independent = std::min(fields.rows(), fields.cols());
+    MatrixXd R = MatrixXd::Zero(fields.cols(), fields.cols());
+    R.topRows(independent) = qr.matrixQR().topRows(independent).triangularView<Eigen::Upper>();
     if (R(0, 0) < 0) R.row(0) *= -1;
     const double mass = R(0, 0) * R(0, 0);
     const MatrixXd values = at_particle_pairs(R, mass);

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/shape/panel_quadrature.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/tests/conformance/body_suite.hpp"
@@ -131,6 +134,34 @@ TEST_F(Plate, spinning_strip_stiffens_as_a_rotating_beam) {
   }
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (K + K.transpose()), M);
   EXPECT_NEAR(std::sqrt(eigen.eigenvalues()[0] + 4), 4.13732, 1e-4);
+}
+
+/// Γ_x and Γ_y of each pair of modes, squared, over the particles and over the plate; a strip of many modes has more of
+/// them than its quadrature has nodes.
+TEST_F(Plate, particles_have_the_integrals_of_second_order_fields) {
+  for (const char* sizes : {"modes: 12, functions_across: 0", "modes: 3"}) {
+    const std::string text =
+        std::string(
+            "format: withy/1\ntime: {end: 1}\nbodies:\n  panel: {type: plate, length: 1, width: 0.1, "
+            "mass_per_area: 2, stiffness: 1, poisson_ratio: 0.2, ") +
+        sizes + "}\nhinges: {axle: {type: revolute, axis: [0, 1, 0], parent: world, child: panel}}\n";
+    const Scene scene = parse_scene(text, "strip", registry_, {});
+    const Body& plate = *scene.model->bodies()[0].body;
+    const auto n = static_cast<Eigen::Index>(plate.shape().modes());
+    const PanelQuadrature x(1, 1, 60), y(0.1, 1, 20);
+    for (const std::size_t direction : {0UL, 1UL}) {
+      Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(n, n), found = expected;
+      for (std::size_t i = 0; i < x.nodes().size(); ++i) {
+        for (std::size_t j = 0; j < y.nodes().size(); ++j) {
+          const auto at = plate.station(fmt::format("({:.17g}; {:.17g})", x.nodes()[i], y.nodes()[j] - 0.05));
+          ASSERT_TRUE(at);
+          expected += 2 * x.weights()[i] * y.weights()[j] * at->gamma[direction].cwiseAbs2();
+        }
+      }
+      for (const Particle& p : plate.shape().particles) found += p.mass * p.at.gamma[direction].cwiseAbs2();
+      EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm()) << sizes << ", direction " << direction;
+    }
+  }
 }
 
 TEST_F(Plate, more_modes_than_functions_are_refused) {
