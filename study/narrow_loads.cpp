@@ -119,18 +119,10 @@ std::optional<double> missed_between(const Eigen::MatrixXd& instants, const Eige
   return {};
 }
 
-/// [s] a period, or a turn of the hinge that is slowest.
-double looked_over(const Configuration& c, const State& steady, const Turning& turning) {
-  double longest = turning.period;
-  for (const std::size_t s : turning.speeds)
-    if (!(turning.period > 0)) longest = std::max(longest, full_turn / std::abs(steady.y[c.layout().positions + s]));
-  return longest;
-}
-
 }  // namespace
 
 std::string meet_narrow_loads(const Configuration& c, const State& steady, TurnCheck& check) {
-  const double over = looked_over(c, steady, check.turning);
+  const double over = one_turn(c.prepared().model(), check.turning, steady);
   if (check.periodic() || over == 0 || c.prepared().model().loads().empty()) return {};
   EffortsOverATurn turn(c, steady, check.turning, over);
   const auto m = static_cast<Eigen::Index>(turn.free().size());

@@ -14,14 +14,6 @@ namespace {
 /// What of a number's greatest size counts as rounding, and of the greatest of its group.
 constexpr double rounded_share = 1e-9, rounded_share_of_group = 1e-13;
 
-/// [s] a turn of what turns, or of the slowest hinge where there is no common one; 0: nothing goes round.
-double one_turn(const Turning& turning, const Configuration& c) {
-  double longest = turning.period;
-  for (const std::size_t s : turning.speeds)
-    if (!(turning.period > 0)) longest = std::max(longest, full_turn / std::abs(c.state().y[c.layout().positions + s]));
-  return longest;
-}
-
 /// What goes in stays as it is, whatever tables say of later.
 State with_inputs_held(const SmallMotions& motions) {
   State state = motions.state();
@@ -147,7 +139,7 @@ void StatesToCome::Looked::compare_slopes(std::size_t k, std::vector<GoingOn>& a
 StatesToCome::StatesToCome(const Configuration& c, const SmallMotions& motions, const Turning& turning, bool pushed,
                            bool timed)
     : c_(c), motions_(motions), turning_(turning), state_(with_inputs_held(motions)), pushed_(pushed) {
-  const double turn = one_turn(turning, c);
+  const double turn = one_turn(c.prepared().model(), turning, c.state());
   for (const double share : in_no_ratio)
     if (turn > 0) few_.push_back({share * turn, false});
   for (const double share : {0.25, 0.5})

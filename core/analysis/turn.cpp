@@ -343,6 +343,14 @@ State carried(const Model& model, const Turning& turning, const State& start, do
   return state;
 }
 
+double one_turn(const Model& model, const Turning& turning, const State& state) {
+  if (turning.period > 0) return turning.period;
+  double longest = 0;
+  for (const std::size_t s : turning.speeds)
+    longest = std::max(longest, full_turn / std::abs(state.y[model.layout().positions + s]));
+  return longest;
+}
+
 std::vector<std::size_t> uneven_motions(const TangentDynamics& dynamics, const State& state, const Held& held) {
   const Model& model = dynamics.model();
   std::vector<std::size_t> uneven;

@@ -34,6 +34,10 @@ Turning turning(const Model& model, const State& state, double period = 0);
 /// was.
 State carried(const Model& model, const Turning& turning, const State& start, double after);
 
+/// [s] the period, or where there is no common one a turn of the coordinate that turns slowest; 0: nothing goes round
+/// by its rate.
+double one_turn(const Model& model, const Turning& turning, const State& state);
+
 /// Motions that do not go on at the rate that they have at the state, of hinges whose motion the free speeds feel:
 /// indices into the model's. What is balanced at that instant does not stay so.
 std::vector<std::size_t> uneven_motions(const TangentDynamics& dynamics, const State& state, const Held& held);

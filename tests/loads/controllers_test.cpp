@@ -2,11 +2,14 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include "withy/tests/conformance/load_suite.hpp"
 #include "withy/tests/loads/load_plugins.hpp"
 #include "withy/tests/loads/scene_run.hpp"
+#include "withy/tests/loads/shown_outputs.hpp"
 
 namespace withy {
 namespace {
@@ -270,6 +273,28 @@ TEST(Controllers, what_a_law_lacks_or_does_not_take_is_said) {
               HasSubstr("hinge 'axle' has 1 rates; there is no component 3"));
   EXPECT_THAT(problem("type: computed-torque, duration: 1, hinges: {axle: {to: 1}}"),
               HasSubstr("/loads/a/bandwidth: "));
+}
+
+TEST(Controllers, TellEachCommandInTheUnitOfItsPlace) {
+  const test::Shown s(R"(format: withy/1
+time: {end: 0.01}
+bodies:
+  cart: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  pole: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  x: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}
+  a: {type: revolute, axis: [0, 0, 1], parent: cart, child: pole}
+loads:
+  ua: {type: input, hinge: a}
+  ux: {type: input, hinge: x}
+  uf: {type: input, frame: pole, direction: [1, 0, 0]}
+  law: {type: state-space, of: [x], to: [ua, ux, uf], A: [[-1]], B: [[1]], C: [[1], [1], [1]], D: [[0], [0], [0]]}
+outputs: {c: {type: control, of: law, show: command}}
+)");
+  std::map<std::string, std::string> units;
+  for (const Column& column : s.columns) units[column.name] = column.unit;
+  EXPECT_EQ(units,
+            (std::map<std::string, std::string>{{"c.command.0", "N m"}, {"c.command.1", "N"}, {"c.command.2", "N"}}));
 }
 
 }  // namespace
