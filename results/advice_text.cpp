@@ -156,9 +156,12 @@ void add_reasons(Lines& lines, const AdviceReport& report) {
 }  // namespace
 
 std::string question_text(const AdviceQuestion& question) {
-  const study::Accuracy& accuracy = question.accuracy;
-  return fmt::format("{}: {}{} {}", question.prepared.title(), accuracy.text(),
-                     accuracy.share ? " of its own range for each of" : " for each of", names_text(question.outputs));
+  // A share is of the output's own range, an angle or a length is not.
+  study::Accuracy share, other = question.accuracy;
+  std::swap(share.share, other.share);
+  std::string asked = share.share ? share.text() + " of its own range" : "";
+  if (other.angle || other.length) asked += (asked.empty() ? "" : " and ") + other.text();
+  return fmt::format("{}: {} for each of {}", question.prepared.title(), asked, names_text(question.outputs));
 }
 
 std::string no_advice_text(const study::Advice& a, const AdviceQuestion& question) {

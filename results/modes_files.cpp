@@ -59,6 +59,14 @@ Json turn_json(const study::TurningModes& turn) {
   j["change"] = turn.check.change;
   j["balanced"] = turn.check.steady;
   j["problem"] = turn.problem.empty() ? turn.check.turning.problem : turn.problem;
+  // Whose motion or change makes the state an instant, by name: what the text tells in sentences.
+  j["passing"] = turn.passing;
+  j["uneven"] = turn.uneven;
+  j["timed"] = turn.timed;
+  j["shaking"] = turn.shaking;
+  j["commanding"] = turn.commanding;
+  j["sampled"] = turn.sampled;
+  j["narrow"] = turn.narrow.empty() ? Json() : Json(turn.narrow);
   if (turn.floquet)
     j["floquet"] = {{"stable", turn.floquet->stable},
                     {"resolution", turn.floquet->resolution},

@@ -124,6 +124,10 @@ TEST(Advise, BeginsWithWhatTheAccuracyIsOf) {
       out.substr(0, out.find('\n')),
       "driven arm: 20 % of its own range for each of shoulder, elbow, link1.tip, link1.tip.deflection, link2.tip, "
       "link2.tip.deflection, payload.tip");
+  const std::string both =
+      advise(folder, {"--modes", "1", "--accuracy", "20%,5deg", "--output", "shoulder,payload.tip"}).out;
+  EXPECT_EQ(both.substr(0, both.find('\n')),
+            "driven arm: 20 % of its own range and 5 deg for each of shoulder, payload.tip");
 }
 
 TEST(Advise, WhereThereIsNoneItSaysWhatWasMeasured) {
