@@ -54,6 +54,18 @@ std::vector<std::string> measured(const Model& model, const ControlEnds& ends) {
   return names;
 }
 
+/// What a load gives to others, which it tells first of its numbers; none where it tells nothing.
+std::vector<Column> given_by(const LoadNode& node) {
+  const LoadOutput* output = node.load->output();
+  const auto* told = dynamic_cast<const LoadNumbers*>(node.load.get());
+  if (output == nullptr || told == nullptr) return {};
+  const std::vector<SensorColumn> numbers = told->numbers();
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < std::min(output->outputs(), numbers.size()); ++i)
+    columns.push_back({output->outputs() == 1 ? node.name : node.name + "." + std::to_string(i), numbers[i].unit});
+  return columns;
+}
+
 /// SI unit of a signal; "1" where it is not known.
 std::string unit_of(const Model& model, const std::string& signal) {
   const auto find = [&](const std::vector<Column>& columns) -> std::string {
@@ -69,6 +81,8 @@ std::string unit_of(const Model& model, const std::string& signal) {
       if (node.sensor != nullptr)
         if (std::string unit = find(columns_of(node)); !unit.empty()) return unit;
   }
+  for (const LoadNode& node : model.loads())
+    if (std::string unit = find(given_by(node)); !unit.empty()) return unit;
   return "1";
 }
 

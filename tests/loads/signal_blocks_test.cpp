@@ -113,6 +113,21 @@ loads: {noise: {type: noise, deviation: 0.3, seed: 11, sample: 0.001}}
   EXPECT_NEAR(beside / n, 0, 4 * 0.09 / std::sqrt(n)) << "one sample says nothing of the next";
 }
 
+TEST(Filter, AChainKeepsTheUnitOfWhatItMeasures) {
+  const Shown s(test::turntable + R"(loads:
+  smooth: {type: filter, of: axle.rate, cutoff: 20 Hz}
+  law: {type: expression, value: 2 * smooth, unit: m, to: nothing}
+  mean: {type: over-time, of: smooth, what: mean}
+  way: {type: over-time, of: law, what: integral}
+outputs:
+  mean_seen: {type: control, of: mean, show: command}
+  way_seen: {type: control, of: way, show: command}
+)");
+  std::vector<std::string> units;
+  for (const Column& column : s.columns) units.push_back(column.unit);
+  EXPECT_EQ(units, (std::vector<std::string>{"rad/s", "m s"}));
+}
+
 TEST(OverTime, SumsAreThoseOfAWave) {
   const Shown s(test::turntable + R"(outputs:
   area: {type: control, of: area, show: command}
