@@ -147,7 +147,8 @@ loads: {servo: {type: pd-controller, law: sine, period: 4 s, hinges: {pivot: {am
   }
   const json turn = result(folder, {"modes", "servo.yaml", "--json"}).at("runs").at(0).at("points").at(0).at("turn");
   EXPECT_EQ(turn.at("passing"), json({"pivot"}));
-  EXPECT_EQ(turn.at("timed"), json::array());
+  EXPECT_EQ(turn.at("timed"), json({"servo"})) << "its reference moves";
+  EXPECT_EQ(turn.at("shaking"), json::array());
   EXPECT_TRUE(turn.at("narrow").is_null());
   const Finished locked = withy(folder, {"equilibrium", "servo.yaml", "--spin", "pivot=0"});
   EXPECT_THAT(locked.out, HasSubstr("steady after"));

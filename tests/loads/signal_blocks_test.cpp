@@ -116,16 +116,15 @@ loads: {noise: {type: noise, deviation: 0.3, seed: 11, sample: 0.001}}
 TEST(Filter, AChainKeepsTheUnitOfWhatItMeasures) {
   const Shown s(test::turntable + R"(loads:
   smooth: {type: filter, of: axle.rate, cutoff: 20 Hz}
-  law: {type: expression, value: 2 * smooth, unit: m, to: nothing}
   mean: {type: over-time, of: smooth, what: mean}
-  way: {type: over-time, of: law, what: integral}
+  way: {type: over-time, of: smooth, what: integral}
 outputs:
   mean_seen: {type: control, of: mean, show: command}
   way_seen: {type: control, of: way, show: command}
 )");
   std::vector<std::string> units;
   for (const Column& column : s.columns) units.push_back(column.unit);
-  EXPECT_EQ(units, (std::vector<std::string>{"rad/s", "m s"}));
+  EXPECT_EQ(units, (std::vector<std::string>{"rad/s", "(rad/s) s"}));
 }
 
 TEST(OverTime, SumsAreThoseOfAWave) {
