@@ -22,8 +22,7 @@ double allowed_off(const SaidSlopes& said, Eigen::Index column, const Eigen::Mat
 /// nearly, in a step and in an eighth of it, seems slow to both.
 bool is_found_between(const SlopeFunction& f, Eigen::Index column, double step, const Eigen::VectorXd& slope,
                       double allowed) {
-  constexpr double golden = 0.6180339887498949;
-  return (central_difference(f, golden * step).col(column) - slope).norm() <= allowed;
+  return (central_difference(f, golden_section * step).col(column) - slope).norm() <= allowed;
 }
 
 /// Whether what a slope does to one side of the place it does not do to the other, over shorter steps as over longer:
@@ -33,6 +32,16 @@ bool has_kink(const SlopeFunction& f, Eigen::Index column, double step, double a
   const auto apart = [&](double h) -> double { return (f(h).col(column) + f(-h).col(column) - 2 * here).norm() / h; };
   const double shorter = apart(step);
   return !(shorter <= allowed || shorter <= apart(8 * step) / 2);
+}
+
+/// Whether steps as short as those that told a slope may see no more than a tread of a function.
+bool may_be_a_tread(const SlopeFunction& f, Eigen::Index column, double wide, double fine, const Eigen::VectorXd& slope,
+                    double allowed) {
+  const auto own = [&](double x) -> Eigen::MatrixXd { return f(x).col(column); };
+  const Eigen::MatrixXd wide_slope = central_difference(own, wide);
+  if ((wide_slope - slope).norm() <= allowed) return false;
+  const Eigen::ArrayXX<bool> treads = has_treads(own, wide, fine, wide_slope, Eigen::MatrixXd(slope));
+  return (treads && wide_slope.array().abs() > slope.array().abs()).any();
 }
 
 /// Columns that some difference agrees with.
@@ -50,14 +59,15 @@ std::vector<bool> agreed_slopes(const SaidSlopes& said, const SlopeFunction& f, 
 }
 
 /// Of a column that no difference agrees with.
-bool is_false(const SaidSlopes& said, const SlopeFunction& f, const RefinedDifference<Eigen::MatrixXd>& found,
+bool is_false(const SaidSlopes& said, const SlopeFunction& f, const RefinedDifference<Eigen::MatrixXd>& found, double h,
               Eigen::Index column) {
   const Eigen::VectorXd slope = found.slope.col(column);
   const double rounding = found.rounding.col(column).norm(), step = found.step.col(column).minCoeff();
   const double together = slope_agreement * slope.norm() + rounding;
   if (!slope.allFinite() || !(found.change.col(column).norm() <= together)) return false;
   if ((said.slopes.col(column) - slope).norm() <= allowed_off(said, column, found.slope) + rounding) return false;
-  return !has_kink(f, column, step, together) && is_found_between(f, column, step, slope, together);
+  return !has_kink(f, column, step, together) && is_found_between(f, column, step, slope, together) &&
+         !may_be_a_tread(f, column, h, step, slope, together);
 }
 
 }  // namespace
@@ -68,7 +78,7 @@ std::optional<FalseSlope> false_slope(const SaidSlopes& said, const SlopeFunctio
   if (std::find(agreed.begin(), agreed.end(), false) == agreed.end()) return {};
   const RefinedDifference<Eigen::MatrixXd> found = refine_difference(f, h, levels, place);
   for (std::size_t j = 0; j < agreed.size(); ++j)
-    if (const auto column = static_cast<Eigen::Index>(j); !agreed[j] && is_false(said, f, found, column))
+    if (const auto column = static_cast<Eigen::Index>(j); !agreed[j] && is_false(said, f, found, h, column))
       return FalseSlope{column, found.slope};
   return {};
 }

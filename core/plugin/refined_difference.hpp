@@ -7,12 +7,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <type_traits>
 #include <utility>
 
 #include "withy/core/plugin/central_difference.hpp"
 
 namespace withy {
+
+inline constexpr double golden_section = std::numbers::phi - 1;
 
 /// Derivatives with what is left between the two steps that told them.
 template <class Matrix>
@@ -22,13 +25,13 @@ struct RefinedDifference {
   Matrix step;           ///< the shorter of the two
 };
 
-/// Where a function goes in stairs, element by element: over the short step `fine` its differences about multiples of
-/// the long one, `wide`, are what they are about 0, and between these multiples it goes otherwise. So does what rounds
-/// its argument, as (x + 1e10) − 1e10: steps shorter than a tread see nothing of how it climbs. A kink, a dead zone, a
-/// limit and one jump are no stairs: short steps see another slope beside them, or long ones in one place alone.
+/// Where a function has treads, element by element: over the short step `fine` its differences about multiples of the
+/// long one, `wide`, are what they are about 0, and between these multiples it goes otherwise. So does what rounds its
+/// argument, as (x + 1e10) − 1e10: steps shorter than a tread see nothing of how it climbs. A kink, a dead zone, a
+/// limit and one jump have none: short steps see another slope beside them, or long ones in one place alone.
 template <class Function, class Matrix>
-Eigen::ArrayXX<bool> in_stairs(Function&& f, double wide, double fine, const Matrix& wide_slope,
-                               const Matrix& fine_slope) {
+Eigen::ArrayXX<bool> has_treads(Function&& f, double wide, double fine, const Matrix& wide_slope,
+                                const Matrix& fine_slope) {
   constexpr std::array<double, 8> places = {-4, -3, -2, -1, 1, 2, 3, 4};
   constexpr int fewest_same = 6, fewest_risen = 3;  // of 8, some of which may lie at a jump, and of 7
   const Eigen::ArrayXXd near = 0.1 * (wide_slope - fine_slope).array().abs();
@@ -45,6 +48,21 @@ Eigen::ArrayXX<bool> in_stairs(Function&& f, double wide, double fine, const Mat
     before = std::move(value);
   }
   return others <= static_cast<int>(places.size()) - fewest_same && risen >= fewest_risen;
+}
+
+/// Where treads are those of stairs: they climb, and long steps see it alike whatever their length. What repeats is
+/// none, as a phase that is wrapped: within a pitch it climbs faster than in the whole, and of the whole long steps see
+/// what their length makes of it.
+template <class Function, class Matrix>
+Eigen::ArrayXX<bool> in_stairs(Function&& f, double wide, double fine, const Matrix& wide_slope,
+                               const Matrix& fine_slope) {
+  constexpr double same_climb = 0.05;  // twenty treads to a step
+  const Matrix shorter = central_difference(f, golden_section * wide);
+  const Eigen::ArrayXXd apart = (wide_slope - fine_slope).array().abs();
+  const Eigen::ArrayXX<bool> climbs =
+      (shorter - wide_slope).array().abs() <= same_climb * apart && wide_slope.array().abs() > fine_slope.array().abs();
+  if (!climbs.any()) return climbs;
+  return climbs && has_treads(f, wide, fine, wide_slope, fine_slope);
 }
 
 /// Finds the derivatives of refine_difference().
@@ -92,10 +110,13 @@ class Refinement {
   using Matrix = std::decay_t<std::invoke_result_t<Function&, double>>;
   static constexpr double epsilon = std::numeric_limits<double>::epsilon(), agreed = 1e-12, rounding = 64 * epsilon;
 
-  /// Where a place has fewer digits than steps are to agree to, they are powers of two of 16 of its least digits or
-  /// more: places are then exact, and f alone rounds.
+  /// A step that is no whole multiple of what divides a millimetre or a turn: of what repeats in it a whole number of
+  /// times, as teeth and magnets do, neither it nor an eighth of it would see anything. Where a place has fewer digits
+  /// than steps are to agree to, they are powers of two of 16 of its least digits or more: places are then exact, and f
+  /// alone rounds.
   [[nodiscard]] double first_step(double h) const {
-    if (!(epsilon * place_ > agreed * h) || !std::isfinite(place_)) return h;
+    constexpr double elevenths = 12.0 / 11;
+    if (!(epsilon * place_ > agreed * h) || !std::isfinite(place_)) return elevenths * h;
     const double power = std::exp2(std::round(std::log2(h)));
     return power < 8 * shortest_ ? std::exp2(std::ceil(std::log2(8 * shortest_))) : power;
   }
@@ -126,8 +147,8 @@ class Refinement {
 };
 
 /// f′(0) of a function that returns an Eigen matrix which owns its elements, by the central difference of eighth order
-/// with the step h where a step of h/8 gives the same, element by element; else by shorter ones until two agree, or
-/// until rounding is more than what two have left. Truncation falls by 8⁸ from one to the next: a spring of a
+/// with a step near h where an eighth of it gives the same, element by element; else by shorter ones until two agree,
+/// or until rounding is more than what two have left. Truncation falls by 8⁸ from one to the next: a spring of a
 /// millimetre is as exact as one of a metre, whose numbers are those of h, and a controller is seen within its limit.
 /// What no two of `levels` pairs agree on is told as the two do that are nearest: a jump as h has it. What short steps
 /// agree on is not believed of a function that goes in stairs, as rounding makes them: mostly nothing at all.

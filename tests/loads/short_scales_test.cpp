@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "withy/core/plugin/refined_difference.hpp"
@@ -68,9 +69,26 @@ TEST(FarAway, SpringsHaveTheirStiffness) {
   EXPECT_NEAR(stiffness("0.001", "-10 * ((h + 1e10) - 1e10)"), 10, 0.05);
 }
 
+constexpr double first_step = 12e-3 / 11;  ///< of a millimetre
+
 TEST(RefinedDifference, HasTheNumbersOfItsFirstStepWhereAShorterOneGivesTheSame) {
   const auto f = [](double x) { return Number(std::sin(1 + x)); };
-  EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, 1e-3)(0));
+  EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, first_step)(0));
+}
+
+/// Cogging, phases that are wrapped and gratings have round pitches, of which steps of a millimetre are a whole number.
+TEST(RefinedDifference, SeesWhatRepeatsInRoundPitches) {
+  const double turn = 2 * std::numbers::pi;
+  for (const double pitch : {2e-3, 1e-3, 5e-4, 3e-4, 2.5e-4, 2e-4, 1.25e-4, 1e-4, 5e-5, 2.5e-5, 1e-5}) {
+    for (const double phase : {0.0, 0.13, -0.31}) {
+      const auto wave = [&](double x) { return Number(pitch / turn * std::sin(turn * (x / pitch + phase))); };
+      EXPECT_NEAR(refined_difference(wave, 1e-3)(0), std::cos(turn * phase), 1e-8) << pitch << ", " << phase;
+      const auto wrapped = [&](double x) { return Number(pitch * std::remainder(x / pitch + phase, 1.0)); };
+      EXPECT_NEAR(refined_difference(wrapped, 1e-3)(0), 1, 1e-8) << pitch << ", " << phase;
+      const auto beside = [&](double x) { return Number(0.7 * x + wrapped(x)(0)); };
+      EXPECT_NEAR(refined_difference(beside, 1e-3)(0), 1.7, 1e-8) << pitch << ", " << phase;
+    }
+  }
 }
 
 TEST(RefinedDifference, FindsTheSlopeBesideAKinkAndThatOfAShortScale) {
@@ -101,7 +119,7 @@ TEST(RefinedDifference, FindsNoSlopeInADeadZoneBehindALimitAndBesideAJump) {
 
 TEST(RefinedDifference, TellsAJumpAsItsFirstStepHasIt) {
   const auto f = [](double x) { return Number(x < 0 ? -1.0 : 1.0); };
-  EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, 1e-3)(0));
+  EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, first_step)(0));
 }
 
 }  // namespace
