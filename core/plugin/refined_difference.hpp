@@ -81,17 +81,19 @@ class Refinement {
   [[nodiscard]] bool done() const { return settled_.all() || h_ / 8 < shortest_; }
 
   void refine() {
-    const Eigen::ArrayXXd left_before = rounding * sizes_ / h_;
+    const Eigen::ArrayXXd sizes_before = sizes_, left_before = rounding * sizes_ / h_;
     h_ /= 8;
     Matrix finer = difference();
     Eigen::ArrayXX<bool> stairs;  // found where they are asked for
     for (Eigen::Index i = 0; i < finer.size(); ++i) {
       if (settled_(i)) continue;
       const double left = std::abs(before_(i) - finer(i)), least = left_before(i) + rounding * sizes_(i) / h_;
+      // What is greater nearby than far off was out of reach of longer steps, and nothing but their zeros agreed.
+      if (sizes_(i) > 2 * sizes_before(i)) best_.change(i) = std::numeric_limits<double>::infinity();
       // Steps of which rounding is most may agree by chance, the shortest on nothing at all.
       settled_(i) = least > best_.change(i);
       if (settled_(i)) continue;
-      settled_(i) = left <= agreed * std::abs(finer(i)) + least;
+      settled_(i) = left <= agreed * std::abs(finer(i)) + least && !(finer(i) == 0 && left == 0 && acts_beside(i));
       if (settled_(i) && is_new(finer, i)) {
         if (stairs.size() == 0) stairs = in_stairs(f_, wide_, h_, first_, finer);
         if (stairs(i)) continue;  // what longer steps have told stands
@@ -131,6 +133,15 @@ class Refinement {
         },
         h_);
   }
+  /// Whether an element changes over the shortest step: one that two steps find zero may act nearer than these reach.
+  bool acts_beside(Eigen::Index i) {
+    if (beside_.size() == 0) {
+      const double step = std::max(0x1p-20 * h_, shortest_);
+      const Matrix ahead = f_(step), behind = f_(-step);
+      beside_ = (ahead - behind).array();
+    }
+    return beside_(i) != 0;
+  }
   /// Whether an element is what the first step knew nothing of.
   [[nodiscard]] bool is_new(const Matrix& slope, Eigen::Index i) const {
     constexpr double same = 1e-6;
@@ -142,6 +153,7 @@ class Refinement {
   double place_, shortest_, h_, wide_;
   Eigen::ArrayXXd sizes_;  ///< greatest |f| of a step, for the rounding of its difference
   Matrix first_, before_;
+  Eigen::ArrayXXd beside_;  ///< what the shortest step changes, once that is asked
   RefinedDifference<Matrix> best_;
   Eigen::ArrayXX<bool> settled_;
 };

@@ -76,6 +76,17 @@ TEST(RefinedDifference, HasTheNumbersOfItsFirstStepWhereAShorterOneGivesTheSame)
   EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, first_step)(0));
 }
 
+/// Of a contact or a latch of short reach, which long steps do not meet.
+TEST(RefinedDifference, SeesWhatActsNearbyAlone) {
+  for (double reach = 1e-2; reach > 1e-8; reach /= 3) {
+    const auto f = [&](double x) { return Number(-200 * x * std::exp(-std::pow(x / reach, 2))); };
+    EXPECT_NEAR(refined_difference(f, 1e-3)(0), -200, 1e-5) << reach;
+    const auto beside = [&](double x) -> Eigen::Matrix<double, 1, 2> { return {f(x)(0), 3 * x}; };
+    EXPECT_NEAR(refined_difference(beside, 1e-3)(0), -200, 1e-5) << reach;
+    EXPECT_NEAR(refined_difference(beside, 1e-3)(1), 3, 1e-10) << reach;
+  }
+}
+
 /// Cogging, phases that are wrapped and gratings have round pitches, of which steps of a millimetre are a whole number.
 TEST(RefinedDifference, SeesWhatRepeatsInRoundPitches) {
   const double turn = 2 * std::numbers::pi;
