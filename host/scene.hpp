@@ -32,7 +32,7 @@ struct Result {
   std::string message;  ///< the physical reason of a bad end; else what a completed run should not keep to itself
   std::vector<Port> columns;
   std::vector<double> values;  ///< row after row, as many numbers in each as there are columns, SI units
-  std::string json;            ///< the content of run.json: peaks, events, final state, certificate
+  std::string json;            ///< of run.json peaks, events, final state, certificate
 
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
   /// The numbers of a column. \throws std::out_of_range with the nearest name where there is none of this.

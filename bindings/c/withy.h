@@ -83,7 +83,7 @@ WITHY_API withy_status withy_scene_run(withy_scene* scene, withy_result** result
 /** As in run.json: "completed", "diverged", "load-failed" and others; empty where the handle is none, as all texts. */
 WITHY_API const char* withy_result_status(const withy_result* result);
 WITHY_API const char* withy_result_message(const withy_result* result);
-/** The content of run.json. */
+/** The content of run.json but for what the files were made of and by. */
 WITHY_API const char* withy_result_json(const withy_result* result);
 WITHY_API size_t withy_result_rows(const withy_result* result);
 WITHY_API size_t withy_result_columns(const withy_result* result);

@@ -377,14 +377,19 @@ StepEnd Instance::step(double from, double length, const BetweenSteps& between) 
   between_ = between ? &between : nullptr;
   SessionEnd end = session_->advance(target, true);
   between_ = nullptr;
-  if (end.status == RunStatus::interrupted && early_ && *early_ > session_->state().time)
+  const auto say_events = [&] {
+    for (const EventTime& e : session_->events())
+      say(Status::ok, log_events, "Event '" + e.name + "' at t = " + brief(e.time) + " s.");
+  };
+  say_events();
+  if (end.status == RunStatus::interrupted && early_ && *early_ > session_->state().time) {
     end = session_->advance(std::min(*early_, target), true);
+    say_events();
+  }
   dynamics_->show(session_->state());
   StepEnd result;
   result.reached = session_->state().time == target;
   result.early = early_.has_value() && !result.reached;
-  for (const EventTime& e : session_->events())
-    say(Status::ok, log_events, "Event '" + e.name + "' at t = " + brief(e.time) + " s.");
   if (end.status == RunStatus::completed && !end.reached && !result.early) {
     result.terminate = true;
     result.reason = "event '" + (session_->events().empty() ? std::string() : session_->events().back().name) +

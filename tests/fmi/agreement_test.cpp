@@ -186,4 +186,32 @@ TEST(Agreement, AStepReturnsEarlyWhereItsIntermediateUpdateAsksForIt) {
   EXPECT_EQ(instance.fmi.DoStep(instance.c, 0.35, 0.05, true, &event, &terminate, &early, &last), fmi3OK);
 }
 
+/// Those that it passes on its way to the time that was asked for, and those before.
+TEST(Agreement, AStepThatReturnsEarlyLogsTheEventsThatItHasPassed) {
+  const Unpacked& fmu = fmu_of_text("passed", R"(format: withy/1
+time: {end: 2}
+integrator: {name: rk4, step: 0.01}
+bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+initial: {hinges: {h: {rate: [1]}}}
+events: {before: {hinge: h, value: 0.105}, between: {hinge: h, value: 0.215}, beyond: {hinge: h, value: 0.4}}
+)");
+  Instance3 instance(fmu, true,
+                     [](fmi3InstanceEnvironment, double time, bool, bool, bool, bool, bool* requested, double* when) {
+                       *requested = time > 0.15;
+                       *when = 0.3;
+                     });
+  instance.initialize();
+  ASSERT_EQ(instance.fmi.SetDebugLogging(instance.c, true, 0, nullptr), fmi3OK);
+  bool event = false, terminate = false, early = false;
+  double last = 0;
+  instance.heard.all.clear();
+  ASSERT_EQ(instance.fmi.DoStep(instance.c, 0, 1, true, &event, &terminate, &early, &last), fmi3OK);
+  EXPECT_EQ(last, 0.3);
+  std::string events;
+  for (const std::string& line : instance.heard.all)
+    if (line.starts_with("Event ")) events += line.substr(0, line.find(" at ")) + ";";
+  EXPECT_EQ(events, "Event 'before';Event 'between';");
+}
+
 }  // namespace withy::test

@@ -33,13 +33,6 @@ std::vector<double> by_differences(Instance3& i, const std::vector<std::uint32_t
   return {found.begin(), found.end()};
 }
 
-/// The FMU of a scene in text. \param name of its file
-const Unpacked& fmu_of_text(const std::string& name, const std::string& text) {
-  const std::filesystem::path file = scratch() / (name + ".yaml");
-  std::ofstream(file) << text;
-  return exported(file.string(), 3);
-}
-
 double slope_by(Instance3& i, std::uint32_t unknown, std::uint32_t known) {
   const double along = 1;
   double got = 0;

@@ -147,6 +147,12 @@ inline std::string smooth_arm_file() {
   std::ofstream(file) << smooth_arm().text();
   return file.string();
 }
+/// The FMU of a scene in text. \param name of its file
+inline const Unpacked& fmu_of_text(const std::string& name, const std::string& text) {
+  const std::filesystem::path file = scratch() / (name + ".yaml");
+  std::ofstream(file) << text;
+  return exported(file.string(), 3);
+}
 
 // Lists of names, which the formatter indents anew each time.
 // clang-format off
@@ -211,6 +217,7 @@ struct Fmi3 {
 struct Heard {
   int lines = 0;
   std::string last;
+  std::vector<std::string> all;
 };
 
 inline void hear2(void* environment, fmi2String, fmi2Status, fmi2String, fmi2String format, ...) {
@@ -221,13 +228,13 @@ inline void hear2(void* environment, fmi2String, fmi2Status, fmi2String, fmi2Str
   va_end(arguments);
   auto& heard = *static_cast<Heard*>(environment);
   ++heard.lines;
-  heard.last = text;
+  heard.all.push_back(heard.last = text);
 }
 
 inline void hear3(void* environment, fmi3Status, fmi3String, fmi3String message) {
   auto& heard = *static_cast<Heard*>(environment);
   ++heard.lines;
-  heard.last = message;
+  heard.all.push_back(heard.last = message);
 }
 
 /// An instance of FMI 2.0 up to the end of its initialization.

@@ -136,7 +136,7 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
         return pandas.DataFrame(self.table, columns=list(self)).set_index("t")
 
     def to_hdf5(self, path: str | os.PathLike[str]) -> None:
-        """Writes the table as ``withy run`` does to ``results.h5``: a dataset for each column with its unit, status and run.json.
+        """Writes a dataset for each column with its unit, as ``results.h5`` of ``withy run`` has them, status and summary.
 
         Raises:
             RuntimeError: where the package was built without HDF5.

@@ -54,7 +54,7 @@ def _as_text(value: Any) -> str:
     """A value as a scene's file has it; a text stays as it is: "25 mm", "quadratic"."""
     if isinstance(value, str):
         return value
-    return json.dumps(plain(value), allow_nan=True)
+    return json.dumps(plain(value), allow_nan=True, ensure_ascii=False)
 
 
 def _frozen(value: Any) -> Any:
