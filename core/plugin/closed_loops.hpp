@@ -50,7 +50,9 @@ class ClosedLoops {
   /// Whether the equations surely keep their rank on the straight way from one closed state to the next: with rows J₁
   /// and J₂ of the two and a positive W the symmetric part of J₁ W J₂ᵀ is positive, for W = M⁻¹ or for one that scales
   /// the columns. Where rank is lost in between it is for none: J(s)ᵀ v = 0 there makes J₂ᵀ v a negative multiple of
-  /// J₁ᵀ v. Else states nearer to each other tell.
+  /// J₁ᵀ v. Besides J₂ is to be near J₁ beside what J₁ has left to a loss of rank: past a place where ways fork states
+  /// that are closed may lie on another way than the one before, and the straight line between them misses the fork.
+  /// Else states nearer to each other tell.
   /// \param rank of independent rows; false where there are less
   [[nodiscard]] virtual bool keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
                                         Work& work) const noexcept = 0;

@@ -59,6 +59,8 @@ double LoopWatch::kept_until(const Stepper& stepper, const State& before, const 
   State& middle = between_[halvings - 1];
   middle.time = before.time + (after.time - before.time) / 2;
   interpolate_step(stepper, middle.time, middle.y);
+  // On one of the ways, where the ends are on two: the halves then lie about the fork.
+  static_cast<void>(loops_->close(middle.y, work_));
   const double first = kept_until(stepper, before, middle, halvings - 1);
   return first < middle.time ? first : kept_until(stepper, middle, after, halvings - 1);
 }

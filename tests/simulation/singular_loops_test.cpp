@@ -91,5 +91,47 @@ loads:
   EXPECT_GT(summary.steps.largest_step * 3, std::numbers::pi / 2);
 }
 
+/// A slider-crank in line, whose slider is at 2 r cos A, or stays over the crank's pivot whatever A is: at a right
+/// angle it may go on either way. With a rod that is a little longer it has one way alone.
+std::string slider_crank(const std::string& rod, const std::string& integrator, const std::string& rate) {
+  return "format: withy/1\ngravity: [0, 0, 0]\ntime: {end: 1}\nintegrator: " + integrator + R"(
+bodies:
+  crank: {type: rigid, mass: 1, center_of_mass: [0.25, 0, 0], inertia: [0.001, 0.02, 0.02, 0, 0, 0], frames: {pin: {position: [0.5, 0, 0]}}}
+  rod: {type: rigid, mass: 1, center_of_mass: [0.25, 0, 0], inertia: [0.001, 0.02, 0.02, 0, 0, 0], frames: {pin: {position: [)" +
+         rod + R"(, 0, 0]}}}
+  slider: {type: rigid, mass: 0.5, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+hinges:
+  crank: {type: revolute, axis: [0, 0, 1], parent: world, child: crank}
+  elbow: {type: revolute, axis: [0, 0, 1], parent: crank.pin, child: rod}
+  slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: slider}
+constraints: {pin: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: rod.pin, b: slider}}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 1, free_position: 0.5}}
+initial: {hinges: {crank: {position: 0.3, rate: )" +
+         rate + "}}}\n";
+}
+
+TEST(SingularLoops, AreSeenWhereWaysForkHoweverShortTheSteps) {
+  for (const char* integrator :
+       {"{name: dopri5, rtol: 1e-4, atol: 1e-6}", "{name: dopri5, rtol: 1e-8, atol: 1e-10}",
+        "{name: dopri5, rtol: 1e-10, atol: 1e-12}", "{name: dopri5, rtol: 1e-8, atol: 1e-10, max_step: 0.003}",
+        "{name: dop853, rtol: 1e-10, atol: 1e-12}", "{name: radau, rtol: 1e-8, atol: 1e-10}",
+        "{name: rk4, step: 1e-3}"})
+    for (const char* rate : {"4", "3.3", "5"}) {
+      const Made made(slider_crank("0.5", integrator, rate));
+      const RunSummary summary = run(made, 1);
+      EXPECT_EQ(summary.status, RunStatus::singular) << integrator << ", " << rate << ": " << summary.message;
+    }
+}
+
+TEST(SingularLoops, AreNotWaysThatPassAForkNearBy) {
+  for (const char* integrator : {"{name: dopri5, rtol: 1e-6, atol: 1e-8}", "{name: dopri5, rtol: 1e-10, atol: 1e-12}",
+                                 "{name: radau, rtol: 1e-8, atol: 1e-10}"})
+    for (const char* rod : {"0.55", "0.501", "0.5001"}) {
+      const Made made(slider_crank(rod, integrator, "4"));
+      const RunSummary summary = run(made, 1);
+      EXPECT_EQ(summary.status, RunStatus::completed) << integrator << ", " << rod << ": " << summary.message;
+    }
+}
+
 }  // namespace
 }  // namespace withy::test
