@@ -251,69 +251,73 @@ bool ClosedEquations::right_way_round(std::span<const double> y, std::size_t ind
   return paths_.right_way_round(index, of_paths_.in(work));
 }
 
-bool ClosedEquations::keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
+bool ClosedEquations::keeps_rank(std::span<const double> before, std::span<const double> after, const LoopRank& rank,
                                  Work& work) const noexcept {
   find_rows(after, J_after_.in(work), work);
   if (!factorize(before, work).ok()) return false;
-  const bool by_mass = keeps_rank_by_mass(rank, work), weighed = factorize_by_columns(work) >= rank;
-  return (by_mass || (weighed && keeps_rank_by_columns(work))) && (!weighed || stays_near(work));
+  return (keeps_rank_by_mass(rank.independent, work) || keeps_rank_by_columns(rank.independent, work)) &&
+         distinct_rows(rank.sizes, work) >= rank.distinct;
 }
 
-std::size_t ClosedEquations::factorize_by_columns(Work& work) const noexcept {
+LoopRank ClosedEquations::rank_at(std::span<const double> y, Work& work) const {
+  LoopRank rank;
+  for (const LoopCount& count : counts(y, work)) rank.independent += count.independent;
+  const std::span<const double> J = J_.in(work);
+  for (std::size_t i = 0; i < rows_; ++i)
+    rank.sizes.push_back(std::sqrt(dot(&J[i * speeds_], &J[i * speeds_], speeds_)));
+  rank.distinct = distinct_rows(rank.sizes, work);
+  return rank;
+}
+
+std::size_t ClosedEquations::distinct_rows(std::span<const double> sizes, Work& work) const noexcept {
+  constexpr double told_apart = 1e-6;  // the root of a gap that is closed
   const std::span<const double> J = J_.in(work), Z = Z_.in(work);
-  const std::span<double> weights = slopes_.in(work).first(speeds_), A = A_.in(work);
+  const std::span<double> A = A_.in(work), moved = slopes_.in(work).first(speeds_);  // what a motion drives is not
+  std::fill(moved.begin(), moved.end(), 0.0);
+  for (std::size_t k = 0; k < rows_ * speeds_; ++k)
+    if (Z[k] != 0) moved[k % speeds_] = 1;
+  for (std::size_t i = 0; i < rows_; ++i)
+    for (std::size_t j = 0; j < rows_; ++j) {
+      double sum = 0;
+      for (std::size_t c = 0; c < speeds_; ++c) sum += moved[c] * J[i * speeds_ + c] * J[j * speeds_ + c];
+      A[i * rows_ + j] = sizes[i] > 0 && sizes[j] > 0 ? sum / (sizes[i] * sizes[j]) : 0;
+    }
+  PivotedFactors f = factors(work);
+  f.size = rows_;
+  f.factorize(A.data(), PivotedFactors::independent);
+  std::size_t distinct = 0;
+  for (std::size_t k = 0; k < f.rank; ++k) distinct += f.L[k * rows_ + k] > told_apart ? 1 : 0;
+  return distinct;
+}
+
+/// In the place of M⁻¹, which a direction with next to no inertia outweighs, one over the squares of J₁'s columns.
+bool ClosedEquations::keeps_rank_by_columns(std::size_t rank, Work& work) const noexcept {
+  const std::span<const double> now = J_.in(work), later = J_after_.in(work), Z = Z_.in(work);
+  const std::span<double> weights = slopes_.in(work).first(speeds_), A = A_.in(work), B = other_A_.in(work);
   for (std::size_t c = 0; c < speeds_; ++c) {
     double square = 0, moved = 0;  // what a motion drives is not moved
     for (std::size_t i = 0; i < rows_; ++i) {
-      square += J[i * speeds_ + c] * J[i * speeds_ + c];
+      square += now[i * speeds_ + c] * now[i * speeds_ + c];
       moved = std::max(moved, std::abs(Z[i * speeds_ + c]));
     }
     weights[c] = moved > 0 && square > 0 ? 1 / square : 0;
   }
-  for (std::size_t i = 0; i < rows_; ++i)
-    for (std::size_t j = 0; j < rows_; ++j) {
-      double& sum = A[i * rows_ + j] = 0;
-      for (std::size_t c = 0; c < speeds_; ++c) sum += J[i * speeds_ + c] * weights[c] * J[j * speeds_ + c];
-    }
-  PivotedFactors f = factors(work);
-  f.factorize(A.data(), PivotedFactors::independent);
-  rank_.in(work)[0] = f.rank;
-  return f.rank;
-}
-
-bool ClosedEquations::keeps_rank_by_columns(Work& work) const noexcept {
-  const std::span<const double> now = J_.in(work), later = J_after_.in(work);
-  const std::span<double> weights = slopes_.in(work).first(speeds_), B = other_A_.in(work);
-  const PivotedFactors f = factors(work);
-  const std::size_t r = f.rank;
-  const auto weighed = [&](std::size_t i, std::size_t j) {
+  const auto weighed = [&](std::span<const double> rows, std::size_t i, std::size_t j) {
     double sum = 0;
-    for (std::size_t c = 0; c < speeds_; ++c) sum += now[i * speeds_ + c] * weights[c] * later[j * speeds_ + c];
+    for (std::size_t c = 0; c < speeds_; ++c) sum += now[i * speeds_ + c] * weights[c] * rows[j * speeds_ + c];
     return sum;
   };
+  for (std::size_t i = 0; i < rows_; ++i)
+    for (std::size_t j = 0; j < rows_; ++j) A[i * rows_ + j] = weighed(now, i, j);
+  PivotedFactors f = factors(work);
+  f.size = rows_;
+  f.factorize(A.data(), PivotedFactors::independent);
+  if (f.rank < rank) return false;
+  const std::size_t r = f.rank;
   for (std::size_t i = 0; i < r; ++i)
     for (std::size_t j = 0; j <= i; ++j)
-      B[i * r + j] = 0.5 * (weighed(f.order[i], f.order[j]) + weighed(f.order[j], f.order[i]));
+      B[i * r + j] = 0.5 * (weighed(later, f.order[i], f.order[j]) + weighed(later, f.order[j], f.order[i]));
   return positive(B.data(), r);
-}
-
-/// ‖L⁻¹ (J₂ − J₁) W^½‖², L Lᵀ = J₁ W J₁ᵀ, is below what a way to a place without rank would have, 1, by far.
-bool ClosedEquations::stays_near(Work& work) const noexcept {
-  constexpr double near = 0.25;
-  const std::span<const double> now = J_.in(work), later = J_after_.in(work);
-  const std::span<double> weights = slopes_.in(work).first(speeds_);
-  const PivotedFactors f = factors(work);
-  double sum = 0;
-  for (std::size_t c = 0; c < speeds_; ++c) {
-    for (std::size_t k = 0; k < f.rank; ++k) {
-      const std::size_t at = f.order[k] * speeds_ + c;
-      double x = later[at] - now[at];
-      for (std::size_t j = 0; j < k; ++j) x -= f.L[k * f.size + j] * f.left[j];
-      f.left[k] = x / f.L[k * f.size + k];
-      sum += weights[c] * f.left[k] * f.left[k];
-    }
-  }
-  return sum < near * near;
 }
 
 bool ClosedEquations::keeps_rank_by_mass(std::size_t rank, Work& work) const noexcept {

@@ -35,8 +35,9 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
            Work& work) const noexcept override;
   bool right_way_round(std::span<const double> y, std::size_t index, Work& work) const noexcept override;
   Closing close(std::span<double> y, Work& work) const noexcept override;
-  bool keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
+  bool keeps_rank(std::span<const double> before, std::span<const double> after, const LoopRank& rank,
                   Work& work) const noexcept override;
+  LoopRank rank_at(std::span<const double> y, Work& work) const override;
   std::vector<LoopCount> counts(std::span<const double> y, Work& work) const override;
   void multipliers(double t, std::span<const double> y, std::span<double> multipliers,
                    Work& work) const noexcept override;
@@ -62,13 +63,9 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   void find_rows(std::span<const double> y, std::span<double> rows, Work& work) const noexcept;
   /// keeps_rank of the rows in `work`.
   bool keeps_rank_by_mass(std::size_t rank, Work& work) const noexcept;
-  /// J W Jᵀ with W in the place of M⁻¹, which a direction with next to no inertia outweighs: one over the squares of
-  /// J's columns. \returns its rank
-  std::size_t factorize_by_columns(Work& work) const noexcept;
-  /// Likewise by its factors.
-  bool keeps_rank_by_columns(Work& work) const noexcept;
-  /// Whether the rows change by so little that no place near the way is without rank, beside it either.
-  bool stays_near(Work& work) const noexcept;
+  bool keeps_rank_by_columns(std::size_t rank, Work& work) const noexcept;
+  /// LoopRank::distinct at the state that `factorize` went to last. What it has left of factors goes.
+  std::size_t distinct_rows(std::span<const double> sizes, Work& work) const noexcept;
   /// That with Z and the factors of J Z. The tree's own part of the memory is free after it.
   Evaluation factorize(std::span<const double> y, Work& work) const noexcept;
   /// change += Z λ for λ of J Z λ = −b, which is left in `multipliers_`.

@@ -29,6 +29,13 @@ struct LoopCount {
   std::size_t independent = 0;  ///< of those of the loops before, and of each other
 };
 
+/// Of the closing equations at the state where a run begins.
+struct LoopRank {
+  std::size_t independent = 0;
+  std::vector<double> sizes;  ///< of the rows of J, one an equation
+  std::size_t distinct = 0;   ///< rows that, over their sizes, keep more than a millionth beside the others
+};
+
 /// With g(x) the gaps of all loops and J = ∂g/∂x N the map from speeds to their rates, equations of motion of closed
 /// loops are
 ///   M u̇ = f + Jᵀ λ,   J u̇ + J̇ u = 0.
@@ -50,12 +57,11 @@ class ClosedLoops {
   /// Whether the equations surely keep their rank on the straight way from one closed state to the next: with rows J₁
   /// and J₂ of the two and a positive W the symmetric part of J₁ W J₂ᵀ is positive, for W = M⁻¹ or for one that scales
   /// the columns. Where rank is lost in between it is for none: J(s)ᵀ v = 0 there makes J₂ᵀ v a negative multiple of
-  /// J₁ᵀ v. Besides J₂ is to be near J₁ beside what J₁ has left to a loss of rank: past a place where ways fork states
-  /// that are closed may lie on another way than the one before, and the straight line between them misses the fork.
-  /// Else states nearer to each other tell.
-  /// \param rank of independent rows; false where there are less
-  [[nodiscard]] virtual bool keeps_rank(std::span<const double> before, std::span<const double> after, std::size_t rank,
-                                        Work& work) const noexcept = 0;
+  /// J₁ᵀ v. Else states nearer to each other tell.
+  /// False too where fewer rows than at the start are told from a loss of rank: within the root of the gap that is left
+  /// of where ways fork no state is known to be on one of them, and short steps slide from one to the other.
+  [[nodiscard]] virtual bool keeps_rank(std::span<const double> before, std::span<const double> after,
+                                        const LoopRank& rank, Work& work) const noexcept = 0;
   /// Equations of each loop at a state, counted by the rank of J M⁻¹ Jᵀ; speeds that motions prescribe are not free.
   [[nodiscard]] virtual std::vector<LoopCount> counts(std::span<const double> y, Work& work) const = 0;
   /// Multipliers λ at (t, y) [N], one an equation: where equations depend on each other, of all that give the same
@@ -69,6 +75,8 @@ class ClosedLoops {
   /// What loop `index` exerts then on the body of its frame b: about the origin of b, in the axes of F on a.
   [[nodiscard]] virtual Wrench reaction(std::size_t index, std::span<const double> multipliers,
                                         Work& work) const noexcept = 0;
+  /// What keeps_rank goes by, at the state where a run begins.
+  [[nodiscard]] virtual LoopRank rank_at(std::span<const double> y, Work& work) const = 0;
 };
 
 /// A SensedState of closed loops may be this too (dynamic_cast).

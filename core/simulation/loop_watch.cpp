@@ -21,8 +21,8 @@ LoopWatch::LoopWatch(const EquationsOfMotion& equations, const State& initial)
   if (loops_ == nullptr) return;
   last_ = initial;
   between_.assign(most_halvings, initial);
-  rank_ = rank_at(initial);
-  begins_singular_ = rank_ < rank_beside(equations, initial);
+  rank_ = loops_->rank_at(initial.y, work_);
+  begins_singular_ = rank_.independent < rank_beside(equations, initial);
 }
 
 std::size_t LoopWatch::rank_beside(const EquationsOfMotion& equations, const State& initial) {
@@ -44,10 +44,10 @@ std::size_t LoopWatch::rank_beside(const EquationsOfMotion& equations, const Sta
   const double most = fastest(0, positions);
   if (most == 0) return 0;
   for (std::size_t i = 0; i < positions; ++i) there.y[i] += beside / most * slopes[i];
-  return loops_->close(there.y, work_).closed ? rank_at(there) : 0;
+  return loops_->close(there.y, work_).closed ? independent_at(there) : 0;
 }
 
-std::size_t LoopWatch::rank_at(const State& state) {
+std::size_t LoopWatch::independent_at(const State& state) {
   std::size_t rank = 0;
   for (const LoopCount& count : loops_->counts(state.y, work_)) rank += count.independent;
   return rank;
@@ -59,8 +59,6 @@ double LoopWatch::kept_until(const Stepper& stepper, const State& before, const 
   State& middle = between_[halvings - 1];
   middle.time = before.time + (after.time - before.time) / 2;
   interpolate_step(stepper, middle.time, middle.y);
-  // On one of the ways, where the ends are on two: the halves then lie about the fork.
-  static_cast<void>(loops_->close(middle.y, work_));
   const double first = kept_until(stepper, before, middle, halvings - 1);
   return first < middle.time ? first : kept_until(stepper, middle, after, halvings - 1);
 }

@@ -24,7 +24,7 @@ class LoopWatch {
   /// Rank between two states of the last step; a way that is too far to tell is halved, so often at most. \returns the
   /// time up to which it is kept for sure; that of `after` where it is all the way
   double kept_until(const Stepper& stepper, const State& before, const State& after, std::size_t halvings);
-  [[nodiscard]] std::size_t rank_at(const State& state);
+  [[nodiscard]] std::size_t independent_at(const State& state);
   /// A little further on along the rates of the start, or its accelerations where it is at rest; 0 where it stays
   /// there, or there is no closed state.
   [[nodiscard]] std::size_t rank_beside(const EquationsOfMotion& equations, const State& initial);
@@ -33,7 +33,7 @@ class LoopWatch {
   Work work_;
   State last_;
   std::vector<State> between_;  ///< one a halving
-  std::size_t rank_ = 0;        ///< of the closing equations at the start
+  LoopRank rank_;               ///< at the start
   bool begins_singular_ = false;
 };
 
