@@ -27,7 +27,8 @@ _schemas: dict[tuple[str, ...], dict[str, Any]] = {}
 
 
 def schema(plugins: Sequence[str] = ()) -> dict[str, Any]:
-    """The JSON Schema of scenes, of all plugins there are: what ``withy schema`` prints."""
+    """The JSON Schema of scenes, of all plugins there are: what ``withy schema`` prints. Libraries that are refused are
+    left out, with a warning."""
     key = folders(plugins)
     if key not in _schemas:
         _schemas[key] = json.loads(library(key).schema())
