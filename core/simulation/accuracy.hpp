@@ -69,7 +69,8 @@ struct Slowing {
   double fastest = 0;  ///< [rad/s], the fastest vibration of what is left; 0 where nothing vibrates
 };
 
-/// The highest mode of a body without which the fastest vibration is slowest; nothing where there are no modes.
+/// The highest mode of a body without which the fastest vibration is slowest, of those that are not prescribed; nothing
+/// where there are none.
 /// \param rows as fastest_mode
 std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system, const Eigen::MatrixXd& rows = {});
 

@@ -219,6 +219,59 @@ loads: {servo: {type: pid, hinge: axle, proportional: 100, derivative: 20, refer
   }
 }
 
+/// A boom whose hub is driven in a plane, with modes out of it, and `more`.
+CertifiedRun driven_in_a_plane(const std::string& tolerances, const std::string& out_of_plane,
+                               const std::string& more = "") {
+  const SceneValues values =
+      SceneValues::parse("format: withy/1\ntime: {end: 5}\nintegrator: {name: dopri5, " + tolerances + R"(}
+bodies:
+  hub: {type: rigid, mass: 5, inertia: [1, 1, 1, 0, 0, 0]}
+  boom: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 30, modes: 2})" +
+                             out_of_plane + R"(}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub, child: boom}
+loads: {motor: {type: hinge-effort, hinge: axle, law: sine, amplitude: 3, period: 1}}
+)" + more,
+                         "planted.yaml");
+  RunSettings settings;
+  settings.look_beyond = false;
+  settings.estimate = Estimate::never;
+  return run(prepare(values, plugins()), plugins(), settings);
+}
+
+/// Without them the steps are the same, however fast they are.
+TEST(Causes, ModesThatRestLimitNoSteps) {
+  const std::string fine = "rtol: 3e-6, atol: 3e-8";
+  const CertifiedRun alone = driven_in_a_plane(fine, ""),
+                     beside = driven_in_a_plane(fine, ", bending_z: {stiffness: 300, modes: 2}");
+  ASSERT_EQ(beside.summary.steps.accepted, alone.summary.steps.accepted);
+  const StepLimit &without = alone.certificate.steps, &with = beside.certificate.steps;
+  EXPECT_GT(with.fastest * with.mean, *with.limit) << "it would be stability";
+  EXPECT_EQ(with.resting, "boom.bending_z[2]");
+  EXPECT_NEAR(with.moving, without.fastest, 1e-3 * without.fastest);
+  EXPECT_EQ(with.cause(), "accuracy");
+  EXPECT_EQ(without.cause(), "accuracy");
+  EXPECT_EQ(without.resting, "");
+  EXPECT_EQ(without.moving, without.fastest);
+}
+
+/// A touch of 1e-13 is enough for unstable steps to grow from, and those of looser tolerances are cut by it.
+TEST(Causes, ModesThatUnstableStepsLetGrowLimitThem) {
+  const std::string loose = "rtol: 1e-4, atol: 1e-4", stiff = ", bending_z: {stiffness: 3000, modes: 2}";
+  const CertifiedRun rests = driven_in_a_plane(loose, stiff),
+                     grows =
+                         driven_in_a_plane(loose, stiff, "initial: {bodies: {boom: {modes: [0, 0, 1.0e-13, 0]}}}\n");
+  EXPECT_EQ(rests.certificate.steps.resting, "boom.bending_z[2]");
+  EXPECT_GT(grows.summary.steps.accepted, 2 * rests.summary.steps.accepted);
+  const StepLimit& limited = grows.certificate.steps;
+  EXPECT_EQ(limited.cause(), "stability");
+  EXPECT_EQ(limited.resting, "");
+  EXPECT_EQ(limited.moving, limited.fastest);
+  ASSERT_TRUE(limited.fewer);
+  EXPECT_EQ(limited.fewer->mode, "boom.bending_z[2]");
+}
+
 /// Steps of a millisecond are short for a blade that its formulation lets fly apart.
 TEST(Causes, StepsThatAreShortEnoughAreNoCause) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml");
