@@ -166,5 +166,58 @@ loads: {servo: {type: pid, hinge: axle, proportional: 100, )" +
   EXPECT_THAT(said("derivative: 10, filter: 0.1"), Not(HasSubstr("drives an inertia"))) << "no such pole";
 }
 
+/// All that is said of a scene, with places.
+std::string implausible_in(const std::string& scene) {
+  std::string all;
+  for (const Remark& r :
+       implausible(prepare(SceneValues::parse("format: withy/1\n" + scene, "planted.yaml"), plugins()), plugins()))
+    all += r.place.path + ": " + r.text + "\n";
+  return all;
+}
+
+/// Of 0.9 m beside 1200 m, typed in millimetres, nobody knows which is wrong; of bodies far apart no other is named.
+TEST(Plausibility, TheBodyThatMakesATreeLargeIsNamedWithTheShortOne) {
+  const auto said = [](const std::string& upper, const std::string& hinge) {
+    return implausible_in(
+        "time: {end: 1}\nbodies:\n  upper: " + upper +
+        "\n  fore: {type: beam, length: 0.9, mass_per_length: 1, bending_y: {stiffness: 40, modes: 1, "
+        "family: orthogonal-polynomials}}\nhinges:\n  root: {type: weld, parent: world, child: upper}\n"
+        "  elbow: {type: weld, child: fore, parent: " +
+        hinge + "}\n");
+  };
+  const std::string beam =
+      "{type: beam, mass_per_length: 1, bending_y: {stiffness: 90, modes: 1, family: orthogonal-polynomials}, length: ";
+  EXPECT_THAT(said(beam + "1200}", "upper.tip"),
+              HasSubstr("/bodies/fore: a flexible body 0.9 m long in a tree of 1201 m, most of it 'upper' with 1200 m; "
+                        "are both in metres?"));
+  EXPECT_THAT(said(beam + "1.2}", "upper.tip"), Not(HasSubstr("in a tree of")));
+  EXPECT_THAT(said("{type: rigid, mass: 1}", "upper, offset: {position: [1000, 0, 0]}"),
+              HasSubstr("a flexible body 0.9 m long in a tree of 1001 m; is the length in metres?"));
+}
+
+TEST(Plausibility, AnInertiaWithoutAMassIsNoticed) {
+  const auto said = [](const std::string& body) {
+    return implausible_in("time: {end: 1}\nbodies: {base: {type: rigid, " + body +
+                          "}}\nhinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: base}}\n");
+  };
+  EXPECT_THAT(said("mass: 0, inertia: [4, 4, 5, 0, 0, 0]"), HasSubstr("/bodies/base: an inertia and a mass of 0 kg"));
+  EXPECT_THAT(said("mass: 1, inertia: [4, 4, 5, 0, 0, 0]"), testing::IsEmpty());
+}
+
+/// A mass on a spring at 10 rad/s: rk4 lets it grow from steps of 2 √2 / 10 s on.
+TEST(Plausibility, FixedStepsBeyondWhatTheIntegratorIsStableToAreNoticed) {
+  const auto said = [](const std::string& integrator) {
+    return implausible_in("time: {end: 100}\nintegrator: " + integrator +
+                          "\nbodies: {cart: {type: rigid, mass: 1}}\n"
+                          "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}\n"
+                          "loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 100}}\n");
+  };
+  EXPECT_THAT(said("{name: rk4, step: 0.35}"),
+              testing::AllOf(HasSubstr("/integrator/step: steps of 0.35 s are 1.23"), HasSubstr("at most 0.28")));
+  EXPECT_THAT(said("{name: rk4, step: 0.28}"), testing::IsEmpty());
+  EXPECT_THAT(said("{name: gauss, step: 0.35}"), testing::IsEmpty());
+  EXPECT_THAT(said("{name: dopri5}"), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace withy::study
