@@ -90,9 +90,14 @@ std::string limit_remedy(const Prepared& prepared, const RunSummary& summary) {
 /// what has to be said of them, empty where the run's message does.
 std::optional<std::string> unstable_steps(const Prepared& prepared, const RunSummary& summary) {
   const Scene& scene = prepared.scene;
-  if (scene.source.at("integrator").find("rtol") != nullptr || summary.steps.accepted == 0) return {};
-  const double step = (summary.reached - scene.initial.time) / static_cast<double>(summary.steps.accepted);
-  if (!steps_too_long(summary, *scene.integrator, step).empty()) return std::string();
+  const Value& integrator = scene.source.at("integrator");
+  if (integrator.find("rtol") != nullptr) return {};
+  const bool first = summary.steps.accepted == 0;
+  const Value* given = integrator.find("step");
+  if (first && given == nullptr) return {};
+  const double step =
+      first ? given->number() : (summary.reached - scene.initial.time) / static_cast<double>(summary.steps.accepted);
+  if (!first && !steps_too_long(summary, *scene.integrator, step).empty()) return std::string();
   if (summary.final.y.size() != prepared.equations->size()) return {};
   // What has grown already is no reason for its growth.
   RunSummary trusted = summary;
@@ -193,7 +198,7 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   // Before any model: what grows in such steps tells nothing of it.
   if (summary.status == RunStatus::diverged)
     if (const std::optional<std::string> steps = unstable_steps(prepared, summary)) return *steps + shorter_steps;
-  if (summary.status == RunStatus::diverged)
+  if (summary.status == RunStatus::diverged || (summary.status == RunStatus::singular && summary.steps.accepted == 0))
     if (std::string text = limit_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::step_underflow)
     if (const Value* least = least_step(prepared.scene, summary.reached))
