@@ -196,9 +196,9 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   if (summary.status == RunStatus::diverged && summary.final.y.size() == prepared.equations->size())
     if (std::string text = load_remedy(prepared, summary); !text.empty()) return text;
   // Before any model: what grows in such steps tells nothing of it.
-  if (summary.status == RunStatus::diverged)
-    if (const std::optional<std::string> steps = unstable_steps(prepared, summary)) return *steps + shorter_steps;
   if (summary.status == RunStatus::diverged || (summary.status == RunStatus::singular && summary.steps.accepted == 0))
+    if (const std::optional<std::string> steps = unstable_steps(prepared, summary)) return *steps + shorter_steps;
+  if (summary.status == RunStatus::diverged)
     if (std::string text = limit_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::step_underflow)
     if (const Value* least = least_step(prepared.scene, summary.reached))

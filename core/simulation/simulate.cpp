@@ -379,9 +379,9 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     }
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
-    summary.message = explain(stop, summary.final.time, examined ? &history : nullptr, model.layout());
     const std::string too_long = steps_too_long(summary, integrator, mean_step);
     blame_steps(run, !too_long.empty(), history, options.deflection_limit, summary, stop);
+    summary.message = explain(stop, summary.final.time, examined ? &history : nullptr, model.layout());
     if (stop.status == RunStatus::diverged)
       summary.message = too_long + summary.message + note_on_impulses(model, run.stepper().state());
   }
