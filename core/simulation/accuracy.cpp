@@ -219,6 +219,7 @@ std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& syste
 std::optional<UnsolvableRate> unsolvable_rate(const Model& model, const EquationsOfMotion& equations,
                                               const State& state) {
   const Layout& layout = model.layout();
+  if (const auto hinge = nonfinite_hinge(model, state, 0)) return UnsolvableRate{hinge->hinge, hinge->why};
   if (layout.speeds == 0 || layout.speeds > largest_examined) return {};
   const FaultyRate rate = faulty_rate(model, equations, state, equations.system(state.time, state.y));
   const std::string& name = layout.speed_names[rate.speed];

@@ -28,10 +28,13 @@ bool may_float(const Model& model) {
   return floats;
 }
 
-/// Why a state has no energy: one of its numbers is none, or the greatest of its speeds, squared, is beyond all.
-std::string without_energy(const Layout& layout, const State& state) {
+/// Why a state has no energy: one of its numbers is none, a hinge's motion is not finite there, or the greatest of its
+/// speeds, squared, is beyond all.
+std::string without_energy(const Model& model, const State& state) {
+  const Layout& layout = model.layout();
   if (const std::string number = nonfinite_number(layout, state); !number.empty())
     return "the energy is not finite: " + number;
+  if (const auto hinge = nonfinite_hinge(model, state, 0)) return "the energy is not finite: " + hinge->why;
   const auto speeds = std::span(state.y).subspan(layout.positions, layout.speeds);
   const auto fastest =
       std::max_element(speeds.begin(), speeds.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -57,13 +60,13 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       work_(0),
       floats_(attention == Attention::whole && may_float(model)),
       initial_work_(initial.y.back()),
-      checked_(initial.time) {
-  if (attention == Attention::whole) effort_watch_.emplace(model, equations, span, summary);
-  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
       loops_(dynamic_cast<const ClosedLoops*>(&equations)),
       length_of_loops_(loops_ != nullptr ? length_of_loops(model) : 0),
       multipliers_(loops_ != nullptr ? loops_->closing_equations() : 0),
       loops_work_(loops_ != nullptr ? equations.make_work() : Work(0)),
+      checked_(initial.time) {
+  if (attention == Attention::whole) effort_watch_.emplace(model, equations, span, summary);
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
     const double length = node.body->shape().length;
     if (node.body->shape().modes() == 0 || !(length > 0)) continue;
@@ -120,10 +123,10 @@ void Monitor::forget_untrusted_peaks() {
 
 void Monitor::observe(const Stepper& stepper) {
   look(stepper.state());
+  steps_ = stepper.statistics().accepted;
   if (effort_watch_) effort_watch_->observe(stepper);
 }
 
-  steps_ = stepper.statistics().accepted;
 double Monitor::kinetic(const State& state, const Energies& energies) {
   if (!own_energy_) return energies.kinetic;
   const auto speeds = std::span<const double>(state.y).subspan(model_.layout().positions, efforts_.size());
@@ -233,9 +236,6 @@ void Monitor::finish_momenta() {
   m.angular = m.angular_scale > 0 ? angular_error_ / m.angular_scale : 0;
 }
 
-void Monitor::audit_energy(const State& state) {
-  if (own_ == nullptr) seen_y_.clear();
-  see(state);
 /// In loops that rest under load each step leaves gaps of rounding, over which the loads work against forces of λ whose
 /// work nothing takes up: that is no motion that could be off by anything. Looked for where it may matter alone.
 void Monitor::find_rounding_energy(const State& state) {
@@ -250,13 +250,16 @@ void Monitor::find_rounding_energy(const State& state) {
   rounding_energy_ = std::max(rounding_energy_, static_cast<double>(steps_) * gap * length_of_loops_ * forces);
 }
 
+void Monitor::audit_energy(const State& state) {
+  if (own_ == nullptr) seen_y_.clear();
+  see(state);
   const Energies e = seen_.energies();
   audit_momenta(e);
   const double kinetic_energy = kinetic(state, e);
   const double energy = kinetic_energy + potential(state, e);
   const double work = state.y.back() - initial_work_;
   const double error = std::abs(energy - initial_energy_ - work);
-  if (!std::isfinite(error) && excess_.empty()) excess_ = without_energy(model_.layout(), state);
+  if (!std::isfinite(error) && excess_.empty()) excess_ = without_energy(model_, state);
   energy_error_ = std::max(energy_error_, error);
   energy_scale_ =
       std::max({energy_scale_, std::abs(energy), std::abs(initial_energy_), std::abs(work), kinetic_energy});
@@ -310,10 +313,10 @@ void Monitor::remember(Memory& memory) {
   memory(initial_energies_.potential);
   memory(energy_error_);
   memory(energy_scale_);
+  memory(rounding_energy_);
   memory(summary_.untruncated_drift);
   memory(linear_error_);
   memory(angular_error_);
-  memory(rounding_energy_);
   memory(untruncated_error_);
   memory(trusted_.time);
   memory(trusted_.y);

@@ -372,6 +372,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     const std::string imbalanced = run.monitor().greatest_speed() > options.least_speed
                                        ? imbalance(summary, options, integrator, mean_step)
                                        : std::string();
+    run.motion_gap().tell(summary);
     for (const std::string& fault : {imbalanced, run.motion_gap().text()}) {
       if (fault.empty()) continue;
       stop.status = RunStatus::inaccurate;
