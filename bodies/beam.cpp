@@ -170,6 +170,9 @@ std::vector<ParameterSpec> strain_parameters(const char* stiffness, const char* 
           text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
 }
 
+/// Quadrature follows the sections as they turn: what nobody means would take all memory.
+constexpr double most_twist = 1e4;  // [rad]
+
 std::vector<ParameterSpec> make_parameters() {
   std::vector<ParameterSpec> torsion = strain_parameters("torsional stiffness GJ");
   torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0).or_table("m"));
@@ -184,6 +187,8 @@ std::vector<ParameterSpec> make_parameters() {
       number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
       number("twist", "rad",
              "angle about x from the body's y to that of the section's own axes, which stiffness and inertia are of")
+          .least(-most_twist)
+          .most(most_twist)
           .or_table("m")
           .optional(),
       map("bending_y", bending("EI_z, for deflection along y", "rotary inertia of the sections per length, rho I_z"),

@@ -21,6 +21,7 @@
 #include <cmath>
 
 #include "beam_fields.hpp"
+#include "place_on_body.hpp"
 #include "withy/core/plugin/turned_sections.hpp"
 #include "withy/core/shape/modal_mass.hpp"
 
@@ -33,7 +34,7 @@ class Beam final : public Body, public TurnedSections, private Rod {
       : material_(material),
         length_(material.length),
         strains_(std::move(strains)),
-        quadrature_(material.length, wave_number(material, strains_), kinks(material, strains_)) {
+        quadrature_(material.length, phase(material, strains_), kinks(material, strains_)) {
     shape_.length = length_;
     for (const BeamStrain& s : strains_) {
       for (std::size_t i = 1; i <= s.functions->count(); ++i) {
@@ -88,8 +89,9 @@ class Beam final : public Body, public TurnedSections, private Rod {
         return {};
       }
     } else {
-      x = std::get<double>(name);
-      if (!(x >= 0 && x <= length_)) return {};
+      const std::optional<double> at = place_on_body(std::get<double>(name), 0, length_);
+      if (!at) return {};
+      x = *at;
     }
     return expansion_at(x, linear_fields(strains_, x));
   }
@@ -104,11 +106,12 @@ class Beam final : public Body, public TurnedSections, private Rod {
     all.insert(all.end(), material_.remarks.begin(), material_.remarks.end());
     return all;
   }
-  std::optional<BodyCut> cut(double x) const override {
-    const std::optional<PointExpansion> at = station(x);
-    if (!at) return {};
+  std::optional<BodyCut> cut(double place) const override {
+    const std::optional<double> on = place_on_body(place, 0, length_);
+    if (!on) return {};
+    const double x = *on;
     BodyCut cut;
-    cut.at = *at;
+    cut.at = *station(x);
     cut.curvature = linear_fields(strains_, x).psi_slope;
     cut.stiffness = turned(own_bending(x), x);
     if (!(x < length_)) return cut;
@@ -116,12 +119,12 @@ class Beam final : public Body, public TurnedSections, private Rod {
     for (const double kink : kinks(material_, strains_)) {
       if (kink > x && kink < length_) beyond.push_back(kink - x);
     }
-    const BeamQuadrature mass(length_ - x, wave_number(material_, strains_), beyond);
+    const BeamQuadrature mass(length_ - x, phase(material_, strains_, x), beyond);
     for (std::size_t k = 0; k < mass.nodes().size(); ++k) {
       const double s = x + mass.nodes()[k];
       cut.particles.push_back({mass.weights()[k] * material_.mass_per_length(s), *station(s)});
     }
-    const SectionQuadrature along(length_ - x, wave_number(material_, strains_), beyond);
+    const SectionQuadrature along(length_ - x, phase(material_, strains_, x), beyond);
     for (std::size_t k = 0; k < along.nodes().size(); ++k) {
       const double s = x + along.nodes()[k];
       const Matrix3 inertia = section_inertia(along.weights()[k], s);
@@ -170,14 +173,7 @@ class Beam final : public Body, public TurnedSections, private Rod {
   double length() const override { return length_; }
   double wave_number() const override { return of_strains(strains_); }
   std::vector<double> kinks() const override { return inside(of_functions(strains_)); }
-  std::vector<double> mass_kinks() const override {
-    std::vector<double> x = kinks(material_, {});
-    if (material_.twist && !material_.inertias.empty()) {
-      const std::vector<double> turns = material_.twist->angle.knots();
-      x.insert(x.end(), turns.begin(), turns.end());
-    }
-    return inside(std::move(x));
-  }
+  std::vector<double> mass_kinks() const override { return inside(kinks(material_, {})); }
   RodSection section(double x) const override {
     LinearFields f = linear_fields(strains_, x);
     const bool stretches = std::any_of(strains_.begin(), strains_.end(),
@@ -191,9 +187,15 @@ class Beam final : public Body, public TurnedSections, private Rod {
     for (const BeamStrain& s : strains) beta = std::max(beta, s.functions->wave_number());
     return beta;
   }
-  /// Of functions whose products are integrated: stiffness and inertia of a twisted beam go like cos 2β.
-  static double wave_number(const BeamMaterial& material, const std::vector<BeamStrain>& strains) {
-    return of_strains(strains) + (material.twist ? material.twist->angle.greatest_slope() : 0);
+  /// Of functions whose products are integrated: stiffness and inertia of a twisted beam go like cos 2β, and β is
+  /// linear between kinks. What turns in one piece is of that piece alone: a jump has a short one.
+  /// \param root  where their x begins on the beam [m]
+  static PhaseBetween phase(const BeamMaterial& material, const std::vector<BeamStrain>& strains, double root = 0) {
+    const double waves = of_strains(strains);
+    if (!material.twist) return [waves](double from, double to) { return waves * (to - from); };
+    return [waves, root, &angle = material.twist->angle](double from, double to) {
+      return waves * (to - from) + std::abs(angle(root + to) - angle(root + from));
+    };
   }
 
   /// Points inside the beam, increasing.
@@ -221,9 +223,11 @@ class Beam final : public Body, public TurnedSections, private Rod {
     };
     for (const auto& [axis, inertia] : material.inertias) add(inertia);
     for (const BeamStrain& s : strains) add(s.stiffness);
-    if (!material.twist || strains.empty()) return x;
+    if (!material.twist) return x;
     const BeamTwist& t = *material.twist;
-    for (const Profile* p : {&t.angle, &t.EI_y, &t.EI_z, &t.shear_y, &t.shear_z}) add(*p);
+    if (!strains.empty() || !material.inertias.empty()) add(t.angle);
+    if (strains.empty()) return x;
+    for (const Profile* p : {&t.EI_y, &t.EI_z, &t.shear_y, &t.shear_z}) add(*p);
     return x;
   }
 
@@ -260,7 +264,7 @@ class Beam final : public Body, public TurnedSections, private Rod {
 
   /// The sections that have rotary inertia, and what they add to the modal mass.
   void add_sections(Eigen::MatrixXd& gram) {
-    const SectionQuadrature along(length_, wave_number(material_, strains_), kinks(material_, strains_));
+    const SectionQuadrature along(length_, phase(material_, strains_), kinks(material_, strains_));
     for (std::size_t k = 0; k < along.nodes().size(); ++k) {
       const double at = along.nodes()[k];
       const Matrix3 inertia = section_inertia(along.weights()[k], at);

@@ -26,16 +26,6 @@ double Profile::mean() const {
   return integral / (rows_.back().first - rows_.front().first);
 }
 
-double Profile::greatest_slope() const {
-  double greatest = 0;
-  for (std::size_t i = 1; i < rows_.size(); ++i) {
-    const auto& [x0, y0] = rows_[i - 1];
-    const auto& [x1, y1] = rows_[i];
-    greatest = std::max(greatest, std::abs(y1 - y0) / (x1 - x0));
-  }
-  return greatest;
-}
-
 std::vector<double> Profile::knots() const {
   std::vector<double> x;
   if (rows_.size() == 1) return x;

@@ -17,8 +17,6 @@ class Profile {
   [[nodiscard]] double operator()(double x) const;
   /// Mean over [0, length].
   [[nodiscard]] double mean() const;
-  /// The greatest change per length [1/m].
-  [[nodiscard]] double greatest_slope() const;
   /// Abscissae of the table's rows, where the property may have a kink; none where it is constant.
   [[nodiscard]] std::vector<double> knots() const;
 

@@ -22,6 +22,7 @@
 #include "damping.hpp"
 #include "equal_particles.hpp"
 #include "magnitude.hpp"
+#include "place_on_body.hpp"
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/core/plugin/registry.hpp"
@@ -77,9 +78,8 @@ class Plate final : public Body {
   std::optional<PointExpansion> station(const StationName& name) const override {
     const auto* text = std::get_if<std::string>(&name);
     if (text == nullptr) {
-      const double x = std::get<double>(name);
-      if (!(x >= 0 && x <= sheet_.length)) return {};
-      return expansion(x, 0);
+      const std::optional<double> x = place_on_body(std::get<double>(name), 0, sheet_.length);
+      return x ? std::optional(expansion(*x, 0)) : std::nullopt;
     }
     if (*text == "root") return expansion(0, 0);
     if (*text == "tip") return expansion(sheet_.length, 0);
@@ -92,8 +92,8 @@ class Plate final : public Body {
   std::vector<std::string> measured_beside() const override { return {"left", "right"}; }
   std::string stations() const override {
     return fmt::format(
-        "root, tip, left and right (the corners at the tip), a coordinate x of the middle line from 0 to {} m, or a "
-        "place '(x, y)' with y from -{} to {} m",
+        "root, tip, left and right (the corners at the tip), a coordinate x of the middle line from 0 to {:.9g} m, or "
+        "a place '(x, y)' with y from -{:.9g} to {:.9g} m",
         sheet_.length, sheet_.width / 2, sheet_.width / 2);
   }
 
@@ -102,6 +102,8 @@ class Plate final : public Body {
   std::optional<std::pair<double, double>> place_of(std::string_view text) const {
     const auto number = [](std::string_view word) {
       word.remove_prefix(std::min(word.find_first_not_of(' '), word.size()));
+      word.remove_suffix(word.size() - (word.find_last_not_of(' ') + 1));
+      if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);  // as numbers of scenes may
       double value = std::nan("");
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
       return error == std::errc() && end == word.data() + word.size() ? value : std::nan("");
@@ -109,8 +111,9 @@ class Plate final : public Body {
     const std::size_t comma = text.find_first_of(",;");
     if (comma == std::string_view::npos || !text.starts_with('(') || !text.ends_with(')')) return {};
     const double x = number(text.substr(1, comma - 1)), y = number(text.substr(comma + 1, text.size() - comma - 2));
-    if (!(x >= 0 && x <= sheet_.length && std::abs(y) <= sheet_.width / 2)) return {};
-    return std::pair(x, y);
+    const std::optional<double> along = place_on_body(x, 0, sheet_.length);
+    const std::optional<double> across = place_on_body(y, -sheet_.width / 2, sheet_.width / 2);
+    return along && across ? std::optional(std::pair(*along, *across)) : std::nullopt;
   }
   Line along(double x) const {
     const auto n = static_cast<Eigen::Index>(along_->count());

@@ -103,7 +103,7 @@ MatchedRun run_prepared(const study::Prepared& prepared, const Measured& data, c
   std::string why;
   if (ended.cause == SteppingEnd::Cause::event) why = "an event of the scene ends it there";
   if (ended.cause == SteppingEnd::Cause::failed || ended.cause == SteppingEnd::Cause::crowded)
-    why = stop_of(ended, *scene.model, equations, loop.state(), loop.stepper().statistics()).reason;
+    why = stop_of(ended, *scene.model, equations, loop.state(), loop.stepper()).reason;
   observer.finish(loop.state(), why);
   return std::move(observer.run);
 }

@@ -36,6 +36,12 @@ std::vector<std::string> words_of(std::string_view line) {
   }
 }
 
+/// What stands up to the first blank.
+std::string first_of(const std::string& line) {
+  const std::size_t first = std::min(line.find_first_not_of(" \t"), line.size());
+  return line.substr(first, line.find_first_of(" \t\r", first) - first);
+}
+
 std::optional<double> fortran_number(std::string text) {
   for (char& c : text)
     if (c == 'd' || c == 'D') c = 'e';
@@ -62,6 +68,7 @@ class ElastoDynReader {
       error(1, "no table of distributed properties, whose heading begins with BlFract or HtFract");
       return beam_;
     }
+    if (!diagnostics_.ok()) return beam_;
     if (lines_.size() > 1 && words_of(lines_[1]).size() > 1) beam_.title = lines_[1];
     if (!beam_.title.empty() && beam_.title.back() == '\r') beam_.title.pop_back();
     table();
@@ -91,9 +98,20 @@ class ElastoDynReader {
         beam_.tower = words[0] == "HtFract";
         return;
       }
-      const auto value = fortran_number(words[0]);
-      if (value && words.size() > 1) keyed_[words[1]] = {*value, static_cast<int>(heading_) + 1};
+      if (words.size() > 1) parameter(words, static_cast<int>(heading_) + 1);
     }
+  }
+
+  /// Fortran ends a number at a comma and takes no notice of what follows: 0,7 would be 0.
+  void parameter(const std::vector<std::string>& words, int line) {
+    const auto value = fortran_number(words[0]);
+    const bool titled = line <= title_lines, cut = value && fortran_number(words[1]);
+    if (!titled && (cut || (!value && is_read(words[1]))))
+      error(line,
+            fmt::format("got {}; need a finite number, whose decimals follow a point, and the name of a parameter",
+                        in_quotes(first_of(lines_[static_cast<std::size_t>(line) - 1]))));
+    else if (value)
+      keyed_[words[1]] = {*value, line};
   }
 
   double keyed(const std::string& key, double otherwise) const {
@@ -138,8 +156,9 @@ class ElastoDynReader {
   std::optional<std::vector<double>> row(std::size_t line, std::size_t columns) const {
     const auto words = words_of(lines_[line]);
     std::vector<double> numbers;
-    for (std::size_t c = 0; c < columns && c < words.size(); ++c) {
+    for (std::size_t c = 0; c < words.size(); ++c) {
       const auto x = fortran_number(words[c]);
+      if (!x && c >= columns) break;  // a remark behind the row
       if (!x) {
         error(static_cast<int>(line) + 1, fmt::format("got {}; need a finite number", in_quotes(words[c])));
         return {};
@@ -148,7 +167,8 @@ class ElastoDynReader {
     }
     if (numbers.size() == columns) return numbers;
     error(static_cast<int>(line) + 1,
-          fmt::format("got {} numbers; need {}, one for each column", numbers.size(), columns));
+          fmt::format("got {} numbers; need {}, one for each column{}", numbers.size(), columns,
+                      lines_[line].find(',') != std::string::npos ? "; decimals follow a point" : ""));
     return {};
   }
 

@@ -121,10 +121,11 @@ Json more_modes_json(const study::MoreModes& more) {
 Json steps_json(const study::StepLimit& s) {
   Json j = {{"limited_by", s.cause()},
             {"mean", s.mean},
-            {"fastest_mode", s.fastest > 0 ? Json(s.fastest) : Json()},
+            {"fastest_mode", s.moving > 0 ? Json(s.moving) : Json()},
             {"step_times_fastest_mode", s.product > 0 ? Json(s.product) : Json()},
             {"stability_limit", s.limit ? Json(*s.limit) : Json()},
             {"fastest_pole", s.maker.empty() ? Json() : Json(s.maker)}};
+  if (!s.resting.empty()) j["at_rest"] = {{"coordinate", s.resting}, {"pole", s.fastest}};
   if (s.fewer) j["fewer_modes"] = {{"without", s.fewer->mode}, {"fastest_mode", s.fewer->fastest}};
   if (!s.unlimited.empty()) j["unlimited_integrators"] = s.unlimited;
   return j;

@@ -245,11 +245,12 @@ std::string step_limit_text(const study::StepLimit& s) {
   std::string text =
       fmt::format("{}: mean step times fastest mode {:.2g}, stable to {:.3g}", cause_text(s), s.product, *s.limit);
   if (s.fastest_rests()) text += ", for what is so fast rests or has just begun";
+  if (!s.resting.empty()) text += fmt::format("; {}, faster at {:.3g}/s, rests and limits none", s.resting, s.fastest);
   if (!s.maker.empty() && s.cause() == "stability") text += "; the fastest pole is " + s.maker;
-  if (s.fewer && s.fewer->fastest > 0 && s.fastest > worth_telling * s.fewer->fastest)
+  if (s.fewer && s.fewer->fastest > 0 && s.moving > worth_telling * s.fewer->fastest)
     text +=
         fmt::format("; without {} the fastest mode is {:.3g} rad/s in place of {:.3g}, for steps {:.2g} times as long",
-                    s.fewer->mode, s.fewer->fastest, s.fastest, s.fastest / s.fewer->fastest);
+                    s.fewer->mode, s.fewer->fastest, s.moving, s.moving / s.fewer->fastest);
   if (!s.unlimited.empty()) text += fmt::format("; no vibration limits the steps of {}", fmt::join(s.unlimited, ", "));
   return text;
 }

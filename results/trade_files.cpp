@@ -30,6 +30,12 @@ std::string trade_over_text(const study::Point& point) {
   return text;
 }
 
+bool measures_hinges(const study::Outputs& outputs) {
+  return outputs.has(study::Measure::angle) || outputs.has(study::Measure::slide);
+}
+
+bool measures_tips(const study::Outputs& outputs) { return outputs.has(study::Measure::place); }
+
 Json trade_result_json(const study::TradeResult& r) {
   return {{"formulation", r.point.formulation},
           {"modes", r.point.modes},
@@ -63,22 +69,43 @@ Json trade_reference_json(const study::TradeReference& r) {
           {"sensor_errors", r.sensor_errors}};
 }
 
+namespace {
+
+/// Takes away numbers that nobody measured, which would be taken for exact ones.
+void leave_unmeasured(Json& j, const study::Outputs& outputs, bool completed) {
+  const auto leave = [&j](const char* key) {
+    if (j.contains(key)) j[key] = Json();
+  };
+  for (const char* key : {"hinge_error", "hinge_way"})
+    if (!completed || !measures_hinges(outputs)) leave(key);
+  for (const char* key : {"tip_error", "tip_way"})
+    if (!completed || !measures_tips(outputs)) leave(key);
+  if (!completed) leave("relative_error");
+}
+
+}  // namespace
+
 Json trade_json(const Scene& scene, const study::TradeStudy& study, const std::vector<study::TradeResult>& results,
                 const std::vector<bool>& front, const std::vector<double>& shares) {
   Json j{{"scene", scene.file}, {"name", scene.name}};
   j["outputs"] = Json::array();
   for (const study::Output& o : study.outputs().list()) j["outputs"].push_back({{"output", o.label}, {"unit", o.unit}});
   j["references"] = Json::object(), j["points"] = Json::array();
-  for (const auto& [over, reference] : study.references()) j["references"][over] = trade_reference_json(reference);
+  for (const auto& [over, reference] : study.references()) {
+    j["references"][over] = trade_reference_json(reference);
+    leave_unmeasured(j["references"][over], study.outputs(), true);
+  }
   for (std::size_t i = 0; i < results.size(); ++i) {
     j["points"].push_back(trade_result_json(results[i]));
+    leave_unmeasured(j["points"].back(), study.outputs(), results[i].completed());
     j["points"].back()["pareto"] = static_cast<bool>(front[i]);
   }
   j["cheapest"] = cheapest_json(results, shares);
   return j;
 }
 
-std::string trade_csv(const std::vector<study::TradeResult>& results, const std::vector<bool>& front) {
+std::string trade_csv(const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
+                      const study::Outputs& outputs) {
   std::string text =
       "formulation,modes,family,integrator,tolerance,over,status,hinge_error,tip_error[m],relative_error,steps,"
       "evaluations,cpu[s],pareto\n";
@@ -87,7 +114,8 @@ std::string trade_csv(const std::vector<study::TradeResult>& results, const std:
     text += fmt::format("{},{},{},{},{:g},\"{}\",{},", r.point.formulation, r.point.modes, r.point.family,
                         r.point.integrator, r.point.tolerance, trade_over_text(r.point), r.status);
     if (r.completed())
-      text += fmt::format("{},{},{},{},{},{},{}\n", r.hinge_error, r.tip_error, r.relative_error, r.steps,
+      text += fmt::format("{},{},{},{},{},{},{}\n", measures_hinges(outputs) ? fmt::format("{}", r.hinge_error) : "",
+                          measures_tips(outputs) ? fmt::format("{}", r.tip_error) : "", r.relative_error, r.steps,
                           r.evaluations, r.cpu_seconds, front[i] ? 1 : 0);
     else
       text += ",,,,,,0\n";
@@ -136,8 +164,6 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
   return svg_plot(title, legend, panels);
 }
 
-namespace {}  // namespace
-
 Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<study::TradeResult>& results,
                 Registry& registry, const std::vector<std::string>& plugin_folders) {
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -155,11 +181,11 @@ Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<s
 std::vector<std::string> trade_content() { return {"trade.json", "trade.csv", "trade.svg", report_name}; }
 
 void write_trade(const std::filesystem::path& folder, const study::Prepared& prepared, const Json& content,
-                 const std::vector<study::TradeResult>& results, const std::vector<bool>& front, Registry& registry,
-                 const std::vector<std::string>& plugin_folders) {
+                 const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
+                 const study::Outputs& outputs, Registry& registry, const std::vector<std::string>& plugin_folders) {
   const std::string title = prepared.title();
   write_file(folder / "trade.json", json_text(content));
-  write_file(folder / "trade.csv", trade_csv(results, front));
+  write_file(folder / "trade.csv", trade_csv(results, front, outputs));
   write_file(folder / "trade.svg", trade_picture(title, results, front));
   if (has_report_page())
     write_study_page(folder / report_name, "trade", title,

@@ -16,14 +16,20 @@ namespace withy {
 /// The values gone over for people: "time_scale=1.2 end=3".
 std::string trade_over_text(const study::Point& point);
 
+/// Whether errors of hinges, and of tips, were measured at all: those of a study that is not asked for them are zero.
+bool measures_hinges(const study::Outputs& outputs);
+bool measures_tips(const study::Outputs& outputs);
+
 nlohmann::ordered_json trade_result_json(const study::TradeResult& result);
 nlohmann::ordered_json trade_reference_json(const study::TradeReference& reference);
-/// The content of trade.json. \param front one a result \param shares errors that the cheapest is named of
+/// The content of trade.json; what was not measured is null. \param front one a result \param shares errors that the
+/// cheapest is named of
 nlohmann::ordered_json trade_json(const Scene& scene, const study::TradeStudy& study,
                                   const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
                                   const std::vector<double>& shares = usual_shares());
-/// A line a point.
-std::string trade_csv(const std::vector<study::TradeResult>& results, const std::vector<bool>& front);
+/// A line a point; what was not measured is empty.
+std::string trade_csv(const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
+                      const study::Outputs& outputs);
 /// Error over cost, both logarithmic; a colour a formulation, the front as a line. A panel for each of the values gone
 /// over.
 std::string trade_picture(const std::string& title, const std::vector<study::TradeResult>& results,
@@ -39,7 +45,8 @@ std::vector<std::string> trade_content();
 /// Writes them. \param content of trade.json \throws std::system_error
 void write_trade(const std::filesystem::path& folder, const study::Prepared& prepared,
                  const nlohmann::ordered_json& content, const std::vector<study::TradeResult>& results,
-                 const std::vector<bool>& front, Registry& registry, const std::vector<std::string>& plugin_folders);
+                 const std::vector<bool>& front, const study::Outputs& outputs, Registry& registry,
+                 const std::vector<std::string>& plugin_folders);
 
 /// Finished points in a folder, a file each.
 class TradeFolder : public study::PointStore {

@@ -17,8 +17,7 @@ std::string points_text(const std::vector<study::TradeResult>& results, const st
   const auto any = [&](auto&& has) { return std::any_of(results.begin(), results.end(), has); };
   const bool families = any([](const study::TradeResult& r) { return !r.point.family.empty(); });
   const bool overs = any([](const study::TradeResult& r) { return !r.point.over.empty(); });
-  const bool hinges = outputs.has(study::Measure::angle) || outputs.has(study::Measure::slide),
-             tips = outputs.has(study::Measure::place);
+  const bool hinges = measures_hinges(outputs), tips = measures_tips(outputs);
   std::vector<std::string> head = {"<", "<formulation", "modes"};
   if (families) head.emplace_back("<family");
   if (overs) head.emplace_back("<over");
@@ -80,8 +79,11 @@ std::string references_text(const study::TradeStudy& study) {
     point.over.clear();
     out += fmt::format(
         "Reference{}: {}; what it may be off by, from what the last modes and ten times the tolerance changed: "
-        "hinges {:.2g}, tips {:.2g} mm, {:.2g} %.\n",
-        over.empty() ? "" : " at " + over, point.text(), r.hinge_error, 1e3 * r.tip_error, 100 * r.relative_error);
+        "{}{}{:.2g} %.\n",
+        over.empty() ? "" : " at " + over, point.text(),
+        measures_hinges(study.outputs()) ? fmt::format("hinges {:.2g}, ", r.hinge_error) : "",
+        measures_tips(study.outputs()) ? fmt::format("tips {:.2g} mm, ", 1e3 * r.tip_error) : "",
+        100 * r.relative_error);
   }
   return out;
 }

@@ -2,6 +2,7 @@
 /// A scene: read, checked, and made into a model.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,7 +84,9 @@ State parse_state(std::string_view text, const std::string& file, const Model& m
 /// The state as JSON text, complete with time and work: reading it back gives the same bits.
 std::string write_state(const Model& model, const State& state);
 
-/// The JSON Schema (draft 2020-12) of scenes, made from every plugin in the registry.
-std::string schema(Registry& registry);
+/// The JSON Schema (draft 2020-12) of scenes, made from every plugin in the registry but those of libraries that are
+/// refused when they are loaded here.
+/// \param left_out called with the reason of each such library, once
+std::string schema(Registry& registry, const std::function<void(const std::string& why)>& left_out = {});
 
 }  // namespace withy

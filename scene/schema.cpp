@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/scene/grammar.hpp"
@@ -26,7 +27,8 @@ Json reference(const char* definition) { return {{"$ref", std::string("#/$defs/"
 /// Makes the schema of everything one registry can read.
 class SchemaWriter {
  public:
-  explicit SchemaWriter(Registry& registry) : registry_(registry) {}
+  SchemaWriter(Registry& registry, const std::function<void(const std::string&)>& left_out)
+      : registry_(registry), left_out_(left_out) {}
 
   Json scene() {
     Json properties = members(grammar::scene_members())["properties"];
@@ -67,6 +69,25 @@ class SchemaWriter {
   }
 
  private:
+  /// Null where the library is refused.
+  template <class Interface>
+  const Plugin<Interface>* at_hand(const std::string& id) {
+    try {
+      return registry_.find<Interface>(id);
+    } catch (const PluginError& e) {
+      if (told_.insert(e.what()).second && left_out_) left_out_(e.what());
+      return nullptr;
+    }
+  }
+
+  /// Of the plugins at hand: a library is known to be refused only after an attempt to load it.
+  template <class Interface>
+  std::vector<std::string> ids() {
+    std::vector<std::string> all = registry_.ids<Interface>();
+    std::erase_if(all, [this](const std::string& id) { return at_hand<Interface>(id) == nullptr; });
+    return all;
+  }
+
   /// Nothing is an empty map where one may be empty.
   static Json map_or_nothing() { return Json::array({"object", "null"}); }
 
@@ -87,7 +108,7 @@ class SchemaWriter {
     if (spec.refers == ParameterSpec::Refers::formulation) return reference("formulation");
     if (spec.refers == ParameterSpec::Refers::motion) return reference("motion");
     Json json = {{"type", "string"}};
-    if (spec.refers == ParameterSpec::Refers::strain_kinematics) json["enum"] = registry_.ids<StrainKinematics>();
+    if (spec.refers == ParameterSpec::Refers::strain_kinematics) json["enum"] = ids<StrainKinematics>();
     if (!spec.choices.empty() && spec.refers == ParameterSpec::Refers::nothing) json["enum"] = spec.choices;
     return json;
   }
@@ -176,7 +197,7 @@ class SchemaWriter {
   Json alternatives(const std::string& key, const Specs& common) {
     Json list = Json::array();
     for (const std::string& id : registry_.ids<Interface>()) {
-      const Plugin<Interface>* plugin = registry_.find<Interface>(id);
+      const Plugin<Interface>* plugin = at_hand<Interface>(id);
       if (plugin == nullptr) continue;
       Specs specs = common;
       specs.insert(specs.end(), plugin->parameters.begin(), plugin->parameters.end());
@@ -203,7 +224,7 @@ class SchemaWriter {
     for (Json& json : list) {
       if (json["properties"]["name"]["const"] != otherwise) require_name(json);
     }
-    list.push_back({{"type", "string"}, {"enum", registry_.ids<Interface>()}});
+    list.push_back({{"type", "string"}, {"enum", ids<Interface>()}});
     return {{"description", fmt::format("{} plugin, by name or with options", key)},
             {"default", otherwise},
             {"anyOf", list}};
@@ -211,7 +232,7 @@ class SchemaWriter {
 
   Json mode_family() {
     Json list = alternatives<ModeFamily>("name", {grammar::family_name()});
-    list.push_back({{"type", "string"}, {"enum", registry_.ids<ModeFamily>()}});
+    list.push_back({{"type", "string"}, {"enum", ids<ModeFamily>()}});
     return {{"description", "mode-family plugin, by name or with options"}, {"anyOf", list}};
   }
 
@@ -219,7 +240,7 @@ class SchemaWriter {
   Json own_formulation() {
     Json list = alternatives<Formulation>("name", {grammar::formulation_name().optional()});
     for (Json& json : list) require_name(json);
-    list.push_back({{"type", "string"}, {"enum", registry_.ids<Formulation>()}});
+    list.push_back({{"type", "string"}, {"enum", ids<Formulation>()}});
     return {{"description", "formulation plugin, by name or with options"}, {"anyOf", list}};
   }
   /// Requires the plugin's name beside its options; kinematics and truncation say theirs (grammar::named_formulation).
@@ -229,7 +250,7 @@ class SchemaWriter {
 
   Json motion() {
     Json list = alternatives<Motion>("type", {grammar::motion_type()});
-    list.push_back({{"type", "string"}, {"enum", registry_.ids<Motion>()}});
+    list.push_back({{"type", "string"}, {"enum", ids<Motion>()}});
     return {{"description", "motion plugin, by type or with options"}, {"anyOf", list}};
   }
 
@@ -277,10 +298,14 @@ class SchemaWriter {
   }
 
   Registry& registry_;
+  const std::function<void(const std::string&)>& left_out_;
+  std::set<std::string> told_;
 };
 
 }  // namespace
 
-std::string schema(Registry& registry) { return SchemaWriter(registry).scene().dump(2); }
+std::string schema(Registry& registry, const std::function<void(const std::string& why)>& left_out) {
+  return SchemaWriter(registry, left_out).scene().dump(2);
+}
 
 }  // namespace withy

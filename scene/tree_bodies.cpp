@@ -11,6 +11,7 @@
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/measured_place.hpp"
 #include "withy/core/plugin/plugin_call.hpp"
+#include "withy/core/plugin/segments.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/state.hpp"
@@ -242,15 +243,16 @@ std::optional<PointExpansion> TreeBodies::section_of(const Body::StationName& st
   const auto piece = [&](int k) { return &nodes_[static_cast<std::size_t>(entry.first + k)]; };
   node = piece(0);
   if (entry.count == 1) return node->body->station(station);
-  const double length = node->body->shape().length;
   if (const auto* name = std::get_if<std::string>(&station)) {
     if (*name == "tip") node = piece(entry.count - 1);
     return *name == "tip" || *name == "root" ? node->body->station(station) : std::nullopt;
   }
-  const double x = std::get<double>(station);
-  const int k = std::clamp(static_cast<int>(x / length), 0, entry.count - 1);
-  node = piece(k);
-  return node->body->station(std::clamp(x - k * length, 0.0, length));
+  std::vector<double> lengths;
+  for (int k = 0; k < entry.count; ++k) lengths.push_back(piece(k)->body->shape().length);
+  const auto place = place_in_segments(lengths, std::get<double>(station));
+  if (!place) return {};
+  node = piece(static_cast<int>(place->segment));
+  return node->body->station(place->x);
 }
 
 int TreeBodies::find(const Value& end, const std::string& name) {

@@ -2,11 +2,12 @@
 /// What is inside a slender body at a section.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
 #include "frame_sensor.hpp"
+#include "withy/core/plugin/segments.hpp"
 #include "withy/core/plugin/turned_sections.hpp"
 
 namespace withy {
@@ -71,26 +72,24 @@ class SectionSensor final : public Sensor {
   std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     const std::vector<int> pieces = model.segments(of_);
     if (pieces.empty()) throw std::invalid_argument("there is no body '" + of_ + "'");
-    double x = at_, length = 0;
+    const auto body_of = [&](int piece) -> const Body& {
+      return *model.bodies()[static_cast<std::size_t>(piece)].body;
+    };
+    std::vector<double> lengths;
     for (const int piece : pieces) {
-      const Body& body = *model.bodies()[static_cast<std::size_t>(piece)].body;
-      if (!body.cut(0))
+      if (!body_of(piece).cut(0))
         throw std::invalid_argument("body '" + of_ +
                                     "' is no beam, and has no sections; `type: reaction` gives what a hinge carries");
-      const double own = body.shape().length;
-      length += own;
-      const bool last = piece == pieces.back();
-      // A place between two segments belongs to the outer one; the sum of their lengths may be off by rounding.
-      if (x < own || (last && x <= own * (1 + 1e-9))) {
-        const SectionPlace place{piece, std::min(x, own)};
-        const auto* turned = dynamic_cast<const TurnedSections*>(&body);
-        const Matrix3 axes = turned != nullptr ? turned->section_axes(place.x) : Matrix3::Identity();
-        return std::make_unique<BoundSection>(place, axes, moduli_, fibres_);
-      }
-      x -= own;
+      lengths.push_back(body_of(piece).shape().length);
     }
-    throw std::invalid_argument(
-        fmt::format("body '{}' ends at x = {} m; there is no section at {} m", of_, length, at_));
+    const auto at = place_in_segments(lengths, at_);
+    if (!at)
+      throw std::invalid_argument(fmt::format("body '{}' ends at x = {} m; there is no section at {} m", of_,
+                                              std::accumulate(lengths.begin(), lengths.end(), 0.0), at_));
+    const SectionPlace place{pieces[at->segment], at->x};
+    const auto* turned = dynamic_cast<const TurnedSections*>(&body_of(place.body));
+    const Matrix3 axes = turned != nullptr ? turned->section_axes(place.x) : Matrix3::Identity();
+    return std::make_unique<BoundSection>(place, axes, moduli_, fibres_);
   }
 
  private:

@@ -94,7 +94,7 @@ void finish(Search& search, Evaluator& evaluator, Advice& advice) {
   choice.cost = evaluator.cost(choice);
   const Prepared& model = *evaluator.model(choice.point).prepared;
   const auto integrator = make_integrator(evaluator.registry(), choice.point.integrator, choice.point.tolerance);
-  advice.steps = step_limit(*integrator, model.scene.initial.time, advice.confirmed);
+  advice.steps = step_limit(model, *integrator, absolute_tolerance(choice.point.tolerance), advice.confirmed);
   advice.indicators = indicators(model.scene, advice.confirmed);
   search.look_up();
   for (Probe& p : advice.above) p.cost = evaluator.cost(p);

@@ -15,7 +15,6 @@
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/instants.hpp"
-#include "withy/core/simulation/renewal.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/check_loads.hpp"
@@ -24,6 +23,18 @@
 
 namespace withy::study {
 namespace {
+
+/// Slots of discrete states that a clock renews, each behind how many of its first are told alone.
+std::vector<std::pair<std::size_t, LoadSlot>> slots_by_the_clock(const Model& model) {
+  std::vector<std::pair<std::size_t, LoadSlot>> slots;
+  for (const LoadSlot& slot : model.layout().discrete_slots) {
+    const DiscretePart* part = model.loads()[slot.load].load->discrete();
+    if (!(part->period() > 0)) continue;
+    const auto* digital = dynamic_cast<const DigitalPart*>(part);
+    slots.emplace_back(digital == nullptr ? 0 : digital->told(), slot);
+  }
+  return slots;
+}
 
 /// The one speed of a hinge, or of that name.
 std::size_t one_speed(const Model& model, const std::string& name, const std::string& what) {
@@ -139,14 +150,34 @@ bool Configuration::sampled() const { return !sampled_slots(prepared_.model()).e
 
 std::vector<LoadSlot> sampled_slots(const Model& model) {
   std::vector<LoadSlot> slots;
-  for (LoadSlot slot : model.layout().discrete_slots) {
-    const DiscretePart* part = model.loads()[slot.load].load->discrete();
-    if (!(part->period() > 0)) continue;
-    const auto* digital = dynamic_cast<const DigitalPart*>(part);
-    const std::size_t told = digital == nullptr ? 0 : digital->told();
+  for (const auto& [told, slot] : slots_by_the_clock(model))
     slots.push_back({slot.load, slot.first + told, slot.count - told});
-  }
   return slots;
+}
+
+std::vector<LoadSlot> told_slots(const Model& model) {
+  std::vector<LoadSlot> slots;
+  for (const auto& [told, slot] : slots_by_the_clock(model)) slots.push_back({slot.load, slot.first, told});
+  return slots;
+}
+
+State told_at(const Model& model, Renewal& renewal, State state) {
+  const std::vector<LoadSlot> told = told_slots(model);
+  // A load may measure what another tells, as it was before the sample.
+  for (std::size_t pass = 0; pass < told.size(); ++pass) {
+    State after = state;
+    renewal.at(state);
+    for (const LoadSlot& slot : told) renewal(after, slot, {});
+    bool same = true;
+    for (const LoadSlot& slot : told) {
+      for (std::size_t i = slot.first; i < slot.first + slot.count; ++i) {
+        same = same && state.y[i] == after.y[i];
+        state.y[i] = after.y[i];
+      }
+    }
+    if (same) break;
+  }
+  return state;
 }
 
 std::vector<std::string> sampled_names(const Model& model) {

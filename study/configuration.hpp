@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "withy/core/analysis/steady_state.hpp"
+#include "withy/core/simulation/renewal.hpp"
 #include "withy/study/prepared.hpp"
 
 namespace withy::study {
@@ -56,6 +57,11 @@ class Configuration {
 std::vector<LoadSlot> sampled_slots(const Model& model);
 /// Its names, as "control.held[0]".
 std::vector<std::string> sampled_names(const Model& model);
+/// Where it has the rest: what outputs alone show of them, one for each of sampled_slots, in their order.
+std::vector<LoadSlot> told_slots(const Model& model);
+/// The state with what outputs alone show of sampled loads as a sample at it would tell; what these hold stays.
+/// \param renewal of the same model
+State told_at(const Model& model, Renewal& renewal, State state);
 
 /// Speeds of a hinge, or the one speed of that name. \throws InputError naming `what` they were wanted for
 std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, const std::string& what);

@@ -56,33 +56,37 @@ std::vector<std::string> without_inputs(const Configuration& c, std::vector<std:
 }
 
 /// What of inputs and outputs is that of one instant, where A is not.
-void look_at_ends(const Configuration& c, SmallMotions& motions, const std::vector<LinearInput>& inputs,
-                  const std::vector<LinearOutput>& outputs, const std::vector<std::string>& names,
-                  const StatesToCome& states, LinearModel& linear) {
-  EndsToCome ends = ends_to_come(c, motions, inputs, outputs, names, states);
+void look_at_ends(const Configuration& c, SmallMotions& motions, SampledLoads& sampled,
+                  const std::vector<LinearInput>& inputs, const std::vector<LinearOutput>& outputs,
+                  const std::vector<std::string>& names, const StatesToCome& states, LinearModel& linear) {
+  EndsToCome ends = ends_to_come(c, motions, sampled, inputs, outputs, names, states);
   linear.turning_inputs = std::move(ends.inputs), linear.turning_outputs = std::move(ends.outputs);
   linear.timed_outputs = std::move(ends.timed), linear.moving_outputs = std::move(ends.moving);
   linear.frozen = !(linear.turning_inputs.empty() && linear.turning_outputs.empty() && linear.timed_outputs.empty());
 }
 
-/// C, D of the outputs in continuous time, and by what is held (columns after those of the states).
+/// C, D of the outputs in continuous time, and by what is held and told (columns after those of the states).
 void look(SmallMotions& motions, const SampledLoads& sampled, const std::vector<LinearInput>& inputs,
           const std::vector<LinearOutput>& outputs, LinearModel& linear) {
   const Eigen::Index n = motions.size(), rows = static_cast<Eigen::Index>(outputs.size());
   LinearSystem& s = linear.system;
-  s.C.setZero(rows, n + sampled.size());
+  s.C.setZero(rows, n + sampled.size() + sampled.told());
   s.D.setZero(rows, static_cast<Eigen::Index>(inputs.size()));
   const bool sensors = std::any_of(outputs.begin(), outputs.end(), [](const LinearOutput& o) { return o.sensed >= 0; });
   SensedDerivatives seen;
-  Eigen::MatrixXd by_held, by_input;
+  Eigen::MatrixXd by_held, by_told, by_input;
   if (sensors) {
     seen = sensed_derivatives(motions);
     by_held.resize(seen.values.size(), sampled.size());
+    by_told.resize(seen.values.size(), sampled.told());
     by_input.resize(seen.values.size(), s.D.cols());
     for (Eigen::Index i = 0; i < sampled.size(); ++i) {
       const auto held_at = [&](double h) { return sampled.displaced(h * Eigen::VectorXd::Unit(sampled.size(), i)); };
       by_held.col(i) = sensed_slope(motions, held_at, motions.step(sampled.efforts().col(i)));
     }
+    for (Eigen::Index i = 0; i < sampled.told(); ++i)
+      by_told.col(i) = sensed_slope(
+          motions, [&](double h) { return sampled.told_displaced(i, h); }, 1e-2);
     for (std::size_t k = 0; k < inputs.size(); ++k)
       by_input.col(static_cast<Eigen::Index>(k)) =
           sensed_slope(motions, inputs[k].state_at, motions.step(inputs[k].efforts));
@@ -96,7 +100,7 @@ void look(SmallMotions& motions, const SampledLoads& sampled, const std::vector<
       s.C.row(k).head(row.size()) = row;
       continue;
     }
-    s.C.row(k) << seen.by_state.row(o.sensed), by_held.row(o.sensed);
+    s.C.row(k) << seen.by_state.row(o.sensed), by_held.row(o.sensed), by_told.row(o.sensed);
     s.D.row(k) = by_input.row(o.sensed);
   }
   linear.output_derivatives =
@@ -140,7 +144,7 @@ void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearM
   }
   auto [Phi, Gamma] = sampled.map(held);
   system.A = std::move(Phi), system.B = std::move(Gamma);
-  system.C = system.C * sampled.renewal(held);
+  system.C = system.C * sampled.shown(held);
   system.period = sampled.period();
   if (held.felt.empty()) return;
   for (const Column& input : linear.inputs) linear.states.push_back(input.name + ".before");
@@ -195,7 +199,7 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
   const std::vector<LinearInput> inputs = chosen_inputs(c, motions, ports.inputs);
   SampledLoads sampled(motions);
   auto [linear, states] = about(c, motions, sampled);
-  if (!linear.frozen) look_at_ends(c, motions, inputs, outputs, ports.outputs, states, linear);
+  if (!linear.frozen) look_at_ends(c, motions, sampled, inputs, outputs, ports.outputs, states, linear);
   look(motions, sampled, inputs, outputs, linear);
   Eigen::MatrixXd efforts(motions.by_effort().cols(), static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t k = 0; k < inputs.size(); ++k) {

@@ -15,8 +15,9 @@ struct About {
   StatesToCome states;
 };
 About about(const Configuration& configuration, const SmallMotions& motions, SampledLoads& sampled);
-/// Gives a model, which has C by (x, d) and D, its A and B: those of continuous time or, where loads are sampled, of
-/// the map between samples, y then just after the sample; with states for what v was before where loads feel it.
+/// Gives a model, which has C by x, d and what is told, and D, its A and B: those of continuous time or, where loads
+/// are sampled, of the map between samples, y then just after the sample; with states for what v was before where loads
+/// feel it.
 void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearModel& linear);
 
 }  // namespace withy::study

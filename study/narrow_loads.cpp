@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -51,23 +50,29 @@ class EffortsOverATurn {
     return columns;
   }
   [[nodiscard]] const std::vector<Eigen::Index>& free() const { return free_; }
+  /// Derivatives of efforts along the displacement, at a state and the start's time, of one load or all.
+  [[nodiscard]] Differenced slopes(const State& place, int load = EquationsOfMotion::all_loads) {
+    return slopes_anyhow(c_, place, [&](const State& state) { return efforts(steady_.time, state, load); });
+  }
+  /// What of an effort's change is asked for.
+  enum class Change { any, at_the_states, of_small_motions };
   /// The load that acts most otherwise at a share of the turn than at its start.
-  [[nodiscard]] std::string load_at(double share) {
+  [[nodiscard]] std::string load_at(double share, Change asked) {
     const State there = at(share);
     std::string name;
     double most = 0;
     const std::vector<LoadNode>& loads = c_.prepared().model().loads();
-    for (std::size_t l = 0; l < loads.size(); ++l) {
-      const double change =
-          (of(there, there.time, static_cast<int>(l)) - of(steady_, steady_.time, static_cast<int>(l)))
-              .cwiseAbs()
-              .maxCoeff();
-      if (change > most) most = change, name = loads[l].name;
-    }
+    for (std::size_t l = 0; l < loads.size(); ++l)
+      if (const double by = change(there, static_cast<int>(l), asked); by > most) most = by, name = loads[l].name;
     return name;
   }
 
  private:
+  double change(const State& there, int load, Change asked) {
+    if (asked == Change::of_small_motions) return other_slopes(slopes(steady_, load), slopes(there, load)).maxCoeff();
+    const Eigen::VectorXd by = (of(there, there.time, load) - of(steady_, steady_.time, load)).cwiseAbs();
+    return asked == Change::any ? by.maxCoeff() : by.head(by.size() / 2).maxCoeff();
+  }
   Eigen::VectorXd efforts(double time, const State& state, int load) {
     std::vector<double> on(c_.layout().speeds);
     c_.prepared().equations->load_efforts(time, state.y, load, on, work_);
@@ -129,28 +134,33 @@ std::string meet_narrow_loads(const Configuration& c, const State& steady, TurnC
   if (m == 0) return {};
   const Eigen::MatrixXd efforts = turn.all(fine_angles);
   const Eigen::VectorXd rounding = rounding_of_rows(efforts), start = efforts.col(0);
-  const auto others = [&](const Eigen::VectorXd& there) -> std::pair<bool, bool> {
-    const Eigen::Array<bool, Eigen::Dynamic, 1> changed = (there - start).array().abs() > rounding.array();
-    return {changed.head(m).any(), changed.tail(m).any()};
+  using Rows = Eigen::Array<bool, Eigen::Dynamic, 1>;
+  const auto others = [&](const Eigen::VectorXd& there) -> Rows {
+    return (there - start).array().abs() > rounding.array();
   };
+  const Differenced slopes = turn.slopes(steady);
+  // What a displacement makes of an effort's square is nothing to small motions.
+  const auto bends = [&](const State& there, const Rows& changed) {
+    return (changed && other_equations(slopes, turn.slopes(there), differenced_equations, Eigen::VectorXd::Zero(m)))
+        .any();
+  };
+  using Change = EffortsOverATurn::Change;
   std::string name;
-  int left = 8;  // derivatives take long
-  for (int k = 1; k < fine_angles && left > 0; ++k) {
-    const auto [pushes, bends] = others(efforts.col(k));
-    if ((!pushes || !check.steady) && (!bends || !check.constant)) continue;
+  for (int k = 1; k < fine_angles && (check.steady || check.constant); ++k) {
+    const Rows changed = others(efforts.col(k));
+    if ((!check.steady || !changed.head(m).any()) && (!check.constant || !changed.tail(m).any())) continue;
     const double share = static_cast<double>(k) / fine_angles;
     const State there = turn.at(share);
     // What time alone makes of it is not of the angle.
-    const auto [place_pushes, place_bends] = others(turn.of(there, steady.time));
-    if (pushes && place_pushes) check.steady = false;
-    if (bends && place_bends && check.constant) {
-      --left;
-      const auto tangents = [&](const State& at) {
-        return c.dynamics().tangents(at.time, at.y, c.dynamics().steady_accelerations(at.time));
-      };
-      check.constant = !other_equations(tangents(steady), tangents(there), turn.free());
+    const Rows of_place = changed && others(turn.of(there, steady.time));
+    if (check.steady && of_place.head(m).any()) {
+      check.steady = false;
+      if (name.empty()) name = turn.load_at(share, Change::at_the_states);
     }
-    if (check.periodic() && name.empty()) name = turn.load_at(share);
+    if (check.constant && of_place.tail(m).any() && bends(there, of_place.tail(m))) {
+      check.constant = false;
+      if (name.empty()) name = turn.load_at(share, Change::of_small_motions);
+    }
   }
   return name;
 }
@@ -170,7 +180,7 @@ std::size_t instants_of_loads(const Configuration& c, const State& steady, const
   throw std::domain_error(
       fmt::format("load '{}' acts in so narrow a part of it that {} instants do not show it, and whether small motions "
                   "grow is not known",
-                  turn.load_at(share), most));
+                  turn.load_at(share, EffortsOverATurn::Change::any), most));
 }
 
 }  // namespace withy::study

@@ -200,7 +200,7 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
                               : -answer.along.dot(motions.efforts(motions.state(), load)) / answer.along.squaredNorm()};
   linear.output_derivatives = "by central differences of eighth order";
   Eigen::MatrixXd A = motions.A(), held = sampled.efforts();
-  linear.system.C.setZero(1, motions.size() + sampled.size());
+  linear.system.C.setZero(1, motions.size() + sampled.size() + sampled.told());
   linear.system.D.setZero(1, 1);
   Eigen::MatrixXd replaced;
   if (is_sampled) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "withy/core/model/closing.hpp"
@@ -27,6 +28,8 @@ namespace {
 constexpr double short_enough = 100, heavy_enough = 1e4;
 /// Damping ratio of a servo over what it drives beyond which the inertia is remarked on.
 constexpr double stiff_enough = 10;
+/// Times the longest stable step: a little damping moves that.
+constexpr double too_long = 1.05;
 
 double mass_of_body(const Body& body) {
   double mass = 0;
@@ -44,25 +47,62 @@ std::vector<double> carried(const Model& model) {
   return masses;
 }
 
-/// The greatest distance between frames at the initial state.
-double extent(const Prepared& prepared) {
+/// A box round points, along the axes of the world.
+struct Box {
+  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  void hold(const Vector3& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
+  [[nodiscard]] double size() const { return (high - low).norm(); }
+};
+
+/// The greatest distance between frames at the initial state, and the body whose own frames make most of it: the name
+/// is empty where none does, as between bodies far apart.
+struct Extent {
+  double all = 0;  ///< [m]
+  std::string greatest;
+  double own = 0;  ///< of that body [m]
+};
+
+Extent extent(const Prepared& prepared) {
   const auto seen = prepared.equations->make_observation();
   seen->observe(prepared.scene.initial.y);
-  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  Box all;
+  std::map<std::string, Box> bodies;
   for (std::size_t b = 0; b < prepared.model().bodies().size(); ++b) {
-    for (std::size_t f = 0; f < prepared.model().bodies()[b].frames.size(); ++f) {
+    const BodyNode& node = prepared.model().bodies()[b];
+    Box& own = bodies[node.segment ? node.segment->whole : node.name];
+    for (std::size_t f = 0; f < node.frames.size(); ++f) {
       const WorldPose pose = seen->frame_pose(static_cast<int>(b), static_cast<int>(f));
       const Vector3 p = Eigen::Map<const Vector3>(pose.position.data());
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
+      all.hold(p);
+      own.hold(p);
     }
   }
-  return (high - low).norm();
+  Extent found{all.size(), {}, 0};
+  for (const auto& [name, box] : bodies)
+    if (box.size() > std::max(found.own, 0.5 * found.all)) found.greatest = name, found.own = box.size();
+  return found;
+}
+
+/// Of a short body among long ones: either may be in another unit.
+std::string short_beside(double length, const Extent& tree) {
+  const std::string which = tree.greatest.empty() ? "; is the length in metres?"
+                                                  : fmt::format(", most of it '{}' with {} m; are both in metres?",
+                                                                tree.greatest, brief(tree.own));
+  return fmt::format(
+      "a flexible body {} m long in a tree of {} m{} Its vibrations are so fast that they may cost all "
+      "of the time of a run; if it does not bend, make it rigid",
+      brief(length), brief(tree.all), which);
+}
+
+/// An inertia without a mass: no distribution of mass has it.
+bool forgets_mass(const ModalShape& shape, double mass) {
+  return mass == 0 && std::any_of(shape.sections.begin(), shape.sections.end(),
+                                  [](const auto& section) { return !section.inertia.isZero(0); });
 }
 
 void look_at_bodies(const Prepared& prepared, std::vector<Remark>& all) {
   const Model& model = prepared.model();
-  const double greatest = extent(prepared);
+  const Extent tree = extent(prepared);
   const std::vector<double> masses = carried(model);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
@@ -71,13 +111,13 @@ void look_at_bodies(const Prepared& prepared, std::vector<Remark>& all) {
     const Place place = place_in_scene(prepared.scene, "bodies", name);
     for (const std::string& remark : node.body->remarks()) all.push_back({place, remark});
     const ModalShape& shape = node.body->shape();
-    if (shape.modes() == 0 || !(shape.length > 0) || node.segment) continue;
     const double own = mass_of_body(*node.body);
-    if (shape.length * short_enough < greatest)
-      all.push_back({place, fmt::format("a flexible body {} m long in a tree of {} m: its vibrations are so fast that "
-                                        "they may cost all of the time of a run; is the length in metres? If it does "
-                                        "not bend, make it rigid",
-                                        brief(shape.length), brief(greatest))});
+    if (forgets_mass(shape, own))
+      all.push_back({place,
+                     "an inertia and a mass of 0 kg, which no body has: is the mass forgotten? The inertia of a rotor "
+                     "behind a gear is the hinge's reflected_inertia"});
+    if (shape.modes() == 0 || !(shape.length > 0) || node.segment) continue;
+    if (shape.length * short_enough < tree.all) all.push_back({place, short_beside(shape.length, tree)});
     if (own * heavy_enough < masses[b])
       all.push_back({place, fmt::format("a flexible body of {} kg carries {} kg: are its length and its mass meant?",
                                         brief(own), brief(masses[b]))});
@@ -158,12 +198,32 @@ void look_at_servos(const Prepared& prepared, std::vector<Remark>& all) {
   }
 }
 
+/// Steps that the scene fixes, beyond those to which the integrator is stable where the run begins.
+void look_at_fixed_step(const Prepared& prepared, const Value& chosen, std::vector<Remark>& all) {
+  const Value* given = chosen.find("step");
+  if (given == nullptr || given->kind() != Value::Kind::number) return;
+  double step = given->number();
+  // Steps end where a load takes a sample.
+  for (const LoadNode& node : prepared.model().loads())
+    if (const DiscretePart* part = node.load->discrete(); part != nullptr && part->period() > 0)
+      step = std::min(step, part->period());
+  const std::optional<TooStiff> stable = too_stiff(prepared, prepared.scene.initial, 0);
+  if (!stable || !(step > too_long * stable->step)) return;
+  all.push_back({given->place(), fmt::format("steps of {} s are {} times as long as the longest that {} is stable to "
+                                             "where the run begins: what vibrates fastest there grows from step to "
+                                             "step once it moves; at most {} s are needed, or radau",
+                                             brief(step), brief(step / stable->step), prepared.scene.integrator_name,
+                                             brief(stable->step))});
+}
+
 /// A motion that the integrator chosen does not follow to the end of the run; a load that its steps do not see.
 void look_at_steps(const Prepared& prepared, std::vector<Remark>& all) {
   const Value* chosen = prepared.scene.source.find("integrator");
   const Place place = chosen != nullptr ? chosen->place() : prepared.scene.source.place();
   if (const std::optional<TooStiff> found = too_stiff(prepared, prepared.scene.initial))
     all.push_back({place, found->text + "; use radau, or give the inertia that is missing"});
+  else if (chosen != nullptr)
+    look_at_fixed_step(prepared, *chosen, all);
   if (const std::optional<FastCourse> unseen = unseen_course(prepared, prepared.scene.initial))
     all.push_back({place, unseen->text});
 }

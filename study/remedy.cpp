@@ -64,14 +64,25 @@ std::string load_remedy(const Prepared& prepared, const RunSummary& summary) {
   return {};
 }
 
-/// Where a motion has no finite numbers any more.
-std::string motion_remedy(const Prepared& prepared, const NonfiniteMotion& motion) {
+/// Where the motion of a hinge is not finite at the last state or until a step after the run's end.
+std::string hinge_remedy(const Prepared& prepared, const RunSummary& summary) {
+  const double ahead = summary.reached - summary.final.time + summary.steps.largest_step;
+  const auto found = nonfinite_hinge(prepared.model(), summary.final, ahead);
+  if (!found) return {};
+  return fmt::format(
+      " What to do: change hinge {} so that its pose, H and bias are finite wherever it comes to, or keep it from "
+      "there, by a load that stops it or an earlier end of the run (time.end).",
+      placed_name(prepared, "hinges", prepared.model().hinges()[found->hinge].name));
+}
+
+/// Where a motion has no finite numbers from a time [s] on.
+std::string motion_remedy(const Prepared& prepared, const std::string& name, double time) {
   return fmt::format(
       " What to do: change the law of {} so that its coordinate, rate and acceleration are finite up to the end of "
       "the run: no division by zero, and no root or logarithm of what falls to zero or below; or end the run before, "
       "as "
       "--set time.end={:.3g}.",
-      placed_name(prepared, "motions", motion.name), 0.99 * motion.time);
+      placed_name(prepared, "motions", name), 0.99 * time);
 }
 
 /// Where kinematics is exact and a deflection past the scene's limit ended the run: nothing says that the motion itself
@@ -90,9 +101,14 @@ std::string limit_remedy(const Prepared& prepared, const RunSummary& summary) {
 /// what has to be said of them, empty where the run's message does.
 std::optional<std::string> unstable_steps(const Prepared& prepared, const RunSummary& summary) {
   const Scene& scene = prepared.scene;
-  if (scene.source.at("integrator").find("rtol") != nullptr || summary.steps.accepted == 0) return {};
-  const double step = (summary.reached - scene.initial.time) / static_cast<double>(summary.steps.accepted);
-  if (!steps_too_long(summary, *scene.integrator, step).empty()) return std::string();
+  const Value& integrator = scene.source.at("integrator");
+  if (integrator.find("rtol") != nullptr) return {};
+  const bool first = summary.steps.accepted == 0;
+  const Value* given = integrator.find("step");
+  if (first && given == nullptr) return {};
+  const double step =
+      first ? given->number() : (summary.reached - scene.initial.time) / static_cast<double>(summary.steps.accepted);
+  if (!first && !steps_too_long(summary, *scene.integrator, step).empty()) return std::string();
   if (summary.final.y.size() != prepared.equations->size()) return {};
   // What has grown already is no reason for its growth.
   RunSummary trusted = summary;
@@ -181,17 +197,21 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
     case RunStatus::too_stiff:
       return stiff_remedy(prepared, summary);
     case RunStatus::inaccurate:
+      if (const auto& lost = summary.lost_motion; !lost.name.empty())
+        return motion_remedy(prepared, lost.name, lost.time);
       return shorter_steps;
     default:
       break;
   }
   if (summary.status == RunStatus::diverged || summary.status == RunStatus::step_underflow)
     if (const auto motion = nonfinite_motion(prepared.model(), summary.reached, summary.steps.largest_step))
-      return motion_remedy(prepared, *motion);
-  if (summary.status == RunStatus::diverged && summary.final.y.size() == prepared.equations->size())
+      return motion_remedy(prepared, motion->name, motion->time);
+  if (summary.status == RunStatus::diverged && summary.final.y.size() == prepared.equations->size()) {
+    if (std::string text = hinge_remedy(prepared, summary); !text.empty()) return text;
     if (std::string text = load_remedy(prepared, summary); !text.empty()) return text;
+  }
   // Before any model: what grows in such steps tells nothing of it.
-  if (summary.status == RunStatus::diverged)
+  if (summary.status == RunStatus::diverged || (summary.status == RunStatus::singular && summary.steps.accepted == 0))
     if (const std::optional<std::string> steps = unstable_steps(prepared, summary)) return *steps + shorter_steps;
   if (summary.status == RunStatus::diverged)
     if (std::string text = limit_remedy(prepared, summary); !text.empty()) return text;

@@ -32,6 +32,7 @@ SampledLoads::SampledLoads(const SmallMotions& motions)
   names_ = sampled_names(model);
   efforts_.setZero(motions_.by_effort().cols(), size());
   Eigen::Index first = 0;
+  const std::vector<LoadSlot> told = told_slots(model);
   for (const LoadSlot& slot : sampled_slots(model)) {
     const auto* digital = dynamic_cast<const DigitalPart*>(&part_of(model, slot));
     if (digital != nullptr && digital->gives_steps())
@@ -39,8 +40,9 @@ SampledLoads::SampledLoads(const SmallMotions& motions)
           "load '{}' gives what it measures in steps: it is not linear, and small motions do not show in it; leave it "
           "out for motions of many steps, and let what measures it measure its own 'of'",
           model.loads()[slot.load].name));
-    loads_.push_back({slot, part_of(model, slot).period(), first});
+    loads_.push_back({slot, part_of(model, slot).period(), first, told[loads_.size()]});
     first += static_cast<Eigen::Index>(slot.count);
+    told_ += static_cast<Eigen::Index>(loads_.back().told.count);
   }
   own_efforts_ = efforts_;
   rates_.setZero(motions_.size(), size());
@@ -105,11 +107,20 @@ Eigen::VectorXd SampledLoads::held(const State& state) const {
   return d;
 }
 
-Eigen::VectorXd SampledLoads::renewed(const State& before, State state, const std::vector<bool>& due) {
+Eigen::VectorXd SampledLoads::held_and_told(const State& state) const {
+  Eigen::VectorXd all(size() + told_);
+  all.head(size()) = held(state);
+  Eigen::Index next = size();
+  for (const Part& part : loads_)
+    for (std::size_t i = part.told.first; i < part.told.first + part.told.count; ++i) all[next++] = state.y[i];
+  return all;
+}
+
+State SampledLoads::after(const State& before, State state, const std::vector<bool>& due) {
   renewal_.at(before);
   for (std::size_t i = 0; i < loads_.size(); ++i)
     if (due[i]) renewal_(state, loads_[i].slot, {});
-  return held(state);
+  return state;
 }
 
 State SampledLoads::displaced(const Eigen::VectorXd& d) const {
@@ -120,24 +131,37 @@ State SampledLoads::displaced(const Eigen::VectorXd& d) const {
   return state;
 }
 
+State SampledLoads::told_displaced(Eigen::Index i, double by) const {
+  State state = motions_.state();
+  for (const Part& part : loads_) {
+    const auto count = static_cast<Eigen::Index>(part.told.count);
+    if (i < count) {
+      state.y[part.told.first + static_cast<std::size_t>(i)] += by;
+      break;
+    }
+    i -= count;
+  }
+  return state;
+}
+
 Eigen::MatrixXd SampledLoads::differentiated(const std::vector<bool>& due) {
-  const Eigen::Index n = motions_.size();
-  Eigen::MatrixXd R = Eigen::MatrixXd::Identity(n + size(), n + size());
+  const Eigen::Index n = motions_.size(), all = size() + told_;
+  Eigen::MatrixXd R = Eigen::MatrixXd::Identity(n + all, n + size());
   const auto slope = [&](auto&& state_at, double step) {
-    const auto after = [&](double h) {
+    const auto told = [&](double h) {
       const State state = state_at(h);
-      return renewed(state, state, due);
+      return held_and_told(after(state, state, due));
     };
-    return adaptive_difference(after, step).slope;
+    return adaptive_difference(told, step).slope;
   };
   for (Eigen::Index i = 0; i < n; ++i)
-    R.col(i).tail(size()) = slope([&](double h) { return motions_.displaced(i, h); }, motions_.step(i));
+    R.col(i).tail(all) = slope([&](double h) { return motions_.displaced(i, h); }, motions_.step(i));
   const Eigen::VectorXd now = held(motions_.state());
   for (const Part& part : loads_) {
     const auto count = static_cast<Eigen::Index>(part.slot.count);
     const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
     for (Eigen::Index i = part.first; i < part.first + count; ++i)
-      R.col(n + i).tail(size()) =
+      R.col(n + i).tail(all) =
           slope([&](double h) { return displaced(h * Eigen::VectorXd::Unit(size(), i)); }, size_of_held);
   }
   return R;
@@ -175,10 +199,10 @@ std::vector<Eigen::MatrixXd> SampledLoads::felt(const std::vector<LinearInput>& 
   bool any = false;
   std::vector<Eigen::MatrixXd> all;
   for (const std::vector<bool>& due : due_) {
-    Eigen::MatrixXd by_input(size(), static_cast<Eigen::Index>(inputs.size()));
+    Eigen::MatrixXd by_input(size() + told_, static_cast<Eigen::Index>(inputs.size()));
     for (std::size_t k = 0; k < inputs.size(); ++k) {
       // Only outputs feel v at once: what loads remember, and give one another, is what it was.
-      const auto pushed = [&](double h) { return renewed(inputs[k].state_at(h), motions_.state(), due); };
+      const auto pushed = [&](double h) { return held_and_told(after(inputs[k].state_at(h), motions_.state(), due)); };
       by_input.col(static_cast<Eigen::Index>(k)) = adaptive_difference(pushed, motions_.step(inputs[k].efforts)).slope;
     }
     any = any || !by_input.isZero(0);
@@ -215,15 +239,15 @@ bool SampledLoads::measured_by_others(std::size_t load) {
   return false;
 }
 
-Eigen::MatrixXd SampledLoads::renewal(const Held& system, std::size_t kind) const {
+Eigen::MatrixXd SampledLoads::shown(const Held& system, std::size_t kind) const {
   const Eigen::Index n = motions_.size(), d = size();
   if (system.felt.empty()) return renewals_[kind];
   const Eigen::MatrixXd& felt = system.felt[kind];
-  Eigen::MatrixXd R(n + d, n + d + felt.cols());
+  Eigen::MatrixXd R(n + d + told_, n + d + felt.cols());
   R.leftCols(n + d) = renewals_[kind];
   R.rightCols(felt.cols()) << Eigen::MatrixXd::Zero(n, felt.cols()), felt;
   // The efforts in whose place v stands are felt no longer.
-  if (system.replaced.size() > 0) R.block(n, n, d, d) -= felt * system.replaced;
+  if (system.replaced.size() > 0) R.block(n, n, d + told_, d) -= felt * system.replaced;
   return R;
 }
 

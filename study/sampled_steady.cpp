@@ -249,7 +249,8 @@ SteadyState steady_state_of(const Configuration& c) {
   }
   const Configuration& found = balance->configuration();
   const Eigen::VectorXd rest = found.dynamics().steady_accelerations(found.state().time);
-  result.state = found.state();
+  Renewal renewal(found.prepared().model(), *found.prepared().equations);
+  result.state = told_at(found.prepared().model(), renewal, found.state());
   result.efforts = found.dynamics().residual(found.state().time, found.state().y, rest);
   result.rates = balance->rates();
   result.renewed = balance->renewed();

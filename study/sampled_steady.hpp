@@ -7,8 +7,8 @@
 namespace withy::study {
 
 /// find_steady_state; where loads are sampled, with all that they hold as it is after each sample: what a sample leaves
-/// as it is, every later one does. Newton's method for displacements, continuous states and what is held together.
-/// \throws std::domain_error, InputError where small motions cannot be found
+/// as it is, every later one does; what they tell is of such a sample. Newton's method for displacements, continuous
+/// states and what is held together. \throws std::domain_error, InputError where small motions cannot be found
 SteadyState steady_state_of(const Configuration& configuration);
 /// Whether its state is one: is_steady_state; where loads are sampled, by what the method above would still change.
 /// \throws std::domain_error where small motions cannot be found

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/model/compiled_model.hpp"
@@ -66,6 +67,11 @@ SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> senso
   // The discrete states that push are the last, before the work.
   push_ = model_->loads().back().slot.first;
   state_.y.insert(state_.y.begin() + static_cast<std::ptrdiff_t>(push_), model_->layout().speeds, 0.0);
+  if (c.sampled()) {
+    // What loads tell may be of a sample at another state, from which this one was found.
+    Renewal renewal(*model_, *equations_);
+    state_ = told_at(*model_, renewal, std::move(state_));
+  }
 
   accelerations_ = accelerations_of(c);
   const Tangents tangents = dynamics_.tangents(c.state().time, c.state().y, accelerations_);

@@ -24,6 +24,7 @@ class SmallMotions {
 
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] const EquationsOfMotion& equations() const { return *equations_; }
+  /// That of the configuration, with what sampled loads tell as of a sample at it.
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] Eigen::Index size() const { return A_.rows(); }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }

@@ -54,7 +54,6 @@ struct StatesToCome::Looked {
   std::vector<Read> then;  ///< one an instant
   Eigen::VectorXd rounding;
   std::optional<Differenced> slopes;  ///< at the state, once they are wanted
-  int left = 8;                       ///< how often derivatives are still compared: these take long
 
   [[nodiscard]] Read at(const State& state) const {
     Read read{reading(state), {}};
@@ -79,11 +78,9 @@ struct StatesToCome::Looked {
   [[nodiscard]] Eigen::VectorXd other_slopes(double after) {
     if (!slopes) slopes = slopes_at(states.carried_on(0));
     const Differenced there = slopes_at(states.carried_on(after));
-    Eigen::VectorXd others = Eigen::VectorXd::Zero(there.slope.size());
-    for (Eigen::Index i = 0; i < others.size(); ++i) {
-      const double change = std::abs(there.slope[i] - slopes->slope[i]) - 10 * (there.change[i] + slopes->change[i]);
-      if (change > 0) others[i] = change / std::max(std::abs(there.slope[i]), std::abs(slopes->slope[i]));
-    }
+    Eigen::VectorXd others = study::other_slopes(*slopes, there);
+    for (Eigen::Index i = 0; i < others.size(); ++i)
+      if (others[i] > 0) others[i] /= std::max(std::abs(there.slope[i]), std::abs(slopes->slope[i]));
     return others;
   }
 
@@ -117,14 +114,13 @@ void StatesToCome::Looked::compare_slopes(std::size_t k, std::vector<GoingOn>& a
   };
   bool any = false;
   for (Eigen::Index i = 0; i < bent.size(); ++i) any = any || other(i);
-  if (!any || left == 0) return;
+  if (!any) return;
   const Eigen::VectorXd noise = scatter(instants[k].after, then[k]).by;
   any = false;
   for (Eigen::Index i = 0; i < bent.size(); ++i) any = any || (other(i) && bent[i] > noise[i]);
   if (!any) return;
   const Read of_place = at(states.of_place(instants[k].after));
   const bool pushed = states.pushed_ || std::any_of(all.begin(), all.end(), [](const GoingOn& g) { return g.timed; });
-  --left;
   const Eigen::VectorXd others = other_slopes(instants[k].after);
   for (Eigen::Index i = 0; i < bent.size(); ++i) {
     if (!other(i) || !(bent[i] > noise[i]) || !(others[i] > differenced_equations)) continue;

@@ -19,16 +19,19 @@ namespace {
 
 /// Loads count: what a servo does is not among the vibrations of the modes. Nothing of models too large to be looked at
 /// as a whole, and where there are no derivatives, as at the end of a run that failed.
-std::optional<FastestPole> pole_at(const Prepared& prepared, const State& state) {
+/// \param resting speeds that stay as they are; empty: none
+std::optional<FastestPole> pole_at(const Prepared& prepared, const State& state, const Held& resting = {}) {
   const Model& model = prepared.model();
   if (model.layout().speeds > largest_examined) return {};
   try {
     if (!loops_of(model).empty()) {
-      const FastestPole pole = fastest_pole_of_loops(model, *prepared.equations, state);
+      const FastestPole pole = fastest_pole_of_loops(model, *prepared.equations, state, resting);
       return std::abs(pole.value) > 0 ? std::optional(pole) : std::nullopt;
     }
     const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
-    const FastestPole pole = fastest_pole(dynamics, state, driven_speeds(model, state));
+    Held held = driven_speeds(model, state);
+    for (std::size_t i = 0; i < resting.size(); ++i) held[i] = held[i] || resting[i];
+    const FastestPole pole = fastest_pole(dynamics, state, held);
     if (std::abs(pole.value) > 0) return pole;
   } catch (const std::domain_error&) {
     return {};
@@ -82,14 +85,66 @@ double longest_step(const Scene& scene) {
   return longest;
 }
 
+/// Speeds that rest along a run, as those out of the plane of a motion do; empty where none does or it is not known.
+/// What limits steps by stability grows until error control sees it: its rates then go to and fro at tens of times the
+/// tolerance and more, so what stays below this share of it at all states that are looked at limits nothing.
+Held resting_speeds(const Model& model, const RunSummary& summary, double absolute) {
+  constexpr double far_below = 0.01;
+  const Layout& layout = model.layout();
+  Held resting(layout.speeds, true);
+  const auto look = [&](const State& state) {
+    for (std::size_t i = 0; i < layout.speeds; ++i)
+      if (!(std::abs(state.y[layout.positions + i]) <= far_below * absolute)) resting[i] = false;
+  };
+  if (summary.validity.along.empty()) return {};
+  for (const State& state : summary.validity.along) look(state);
+  look(summary.final);
+  return std::find(resting.begin(), resting.end(), true) != resting.end() ? resting : Held();
+}
+
+/// Of equations at a state, resting speeds as if they were prescribed.
+DenseSystem system_of_moving(const EquationsOfMotion& equations, const State& state, const Held& resting) {
+  DenseSystem system = equations.system(state.time, state.y);
+  for (std::size_t i = 0; i < resting.size(); ++i)
+    if (resting[i]) system.prescribed.push_back({i, 0});
+  return system;
+}
+
+StepLimit of_vibrations(const Prepared& prepared, const Integrator& integrator, const RunSummary& summary,
+                        const Held& resting) {
+  StepLimit s;
+  s.limit = integrator.stability_limit();
+  // What never moves is no measure of what its steps are limited by.
+  if (summary.steps.accepted == 0 || summary.energy_scale == 0) return s;
+  s.mean = (summary.reached - prepared.scene.initial.time) / static_cast<double>(summary.steps.accepted);
+  s.fastest = s.moving = summary.fastest_mode;
+  const EquationsOfMotion& equations = *prepared.equations;
+  if (s.fastest > 0 && !resting.empty())
+    s.moving = fastest_mode(prepared.model(), system_of_moving(equations, summary.final, resting),
+                            closing_rows(equations, summary.final.y));
+  s.product = s.mean * s.moving;
+  return s;
+}
+
 /// Where no pole is known the fastest mode stays.
-void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit& s) {
+void find_fastest(const Prepared& prepared, const RunSummary& summary, const Held& resting, StepLimit& s) {
   if (s.mean == 0) return;
-  const std::optional<FastestPole> pole = pole_at(prepared, summary.final);
+  std::optional<FastestPole> pole = pole_at(prepared, summary.final);
   if (!pole) return;
+  const Layout& layout = prepared.model().layout();
   s.fastest = std::abs(pole->value);
-  s.product = s.mean * s.fastest;
-  s.maker = describe(*pole, prepared.model().layout());
+  if (!resting.empty()) {
+    constexpr double clearly = 1.01;
+    std::optional<FastestPole> moving = pole_at(prepared, summary.final, resting);
+    s.moving = moving ? std::abs(moving->value) : 0;
+    if (s.fastest > clearly * s.moving && !pole->of_load_state()) s.resting = layout.speed_names[pole->speed];
+    pole = std::move(moving);
+  } else {
+    s.moving = s.fastest;
+  }
+  s.product = s.mean * s.moving;
+  if (!pole) return;
+  s.maker = describe(*pole, layout);
   s.made_by_load = pole->of_load;
 }
 
@@ -110,27 +165,24 @@ bool StepLimit::fastest_rests() const {
   return controlled && limit && product > far * *limit;
 }
 
-StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary) {
-  StepLimit s;
-  s.limit = integrator.stability_limit();
-  // What never moves is no measure of what its steps are limited by.
-  if (summary.steps.accepted == 0 || summary.energy_scale == 0) return s;
-  s.mean = (summary.reached - start) / static_cast<double>(summary.steps.accepted);
-  s.fastest = summary.fastest_mode;
-  s.product = s.mean * s.fastest;
-  return s;
+StepLimit step_limit(const Prepared& prepared, const Integrator& integrator, double absolute,
+                     const RunSummary& summary) {
+  return of_vibrations(prepared, integrator, summary, resting_speeds(prepared.model(), summary, absolute));
 }
 
 StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Registry& registry) {
   const Scene& scene = prepared.scene;
-  StepLimit s = step_limit(*scene.integrator, scene.initial.time, summary);
+  // An instability of steps that nobody controls grows from nothing.
+  const Value* absolute = controlled(scene) ? scene.source.at("integrator").find("atol") : nullptr;
+  const Held resting = absolute != nullptr ? resting_speeds(prepared.model(), summary, absolute->number()) : Held();
+  StepLimit s = of_vibrations(prepared, *scene.integrator, summary, resting);
   s.controlled = controlled(scene);
   s.longest = longest_step(scene);
-  find_fastest(prepared, summary, s);
+  find_fastest(prepared, summary, resting, s);
   if (s.cause() != "stability") return s;
   const EquationsOfMotion& equations = *prepared.equations;
   if (!s.made_by_load)
-    s.fewer = best_slowing(*scene.model, equations.system(summary.final.time, summary.final.y),
+    s.fewer = best_slowing(*scene.model, system_of_moving(equations, summary.final, resting),
                            closing_rows(equations, summary.final.y));
   // Those with error control, so that no step need be chosen. The first folds stiffness into a symmetric mass matrix.
   for (const std::string id : {"imex", "radau"}) {

@@ -14,10 +14,14 @@
 namespace withy::study {
 
 struct StepLimit {
-  double mean = 0;              ///< [s]
-  double fastest = 0;           ///< modulus of the fastest pole at the end, of all that acts [1/s]
-  double product = 0;           ///< mean step times that; 0 where it is not known
-  std::string maker = {};       ///< what makes it so fast, in words; empty where it is not known
+  double mean = 0;     ///< [s]
+  double fastest = 0;  ///< modulus of the fastest pole at the end, of all that acts [1/s]
+  /// The same of what moves in the run [1/s]: of coordinates whose rates stay far below the tolerance of error control
+  /// none limits steps. `fastest` where nothing rests; 0 where all does.
+  double moving = 0;
+  std::string resting = {};     ///< the coordinate that makes `fastest` more than `moving`; empty where none does
+  double product = 0;           ///< mean step times `moving`; 0 where it is not known
+  std::string maker = {};       ///< what makes what moves so fast, in words; empty where it is not known
   bool made_by_load = false;    ///< a load does
   std::optional<double> limit;  ///< of that product, beyond which the integrator is not stable
   /// What helps against stability: the mode without which the fastest vibration is slowest, and the integrators of
@@ -30,12 +34,14 @@ struct StepLimit {
   /// "stability", "accuracy", "given" (by the scene, as fixed steps are and those that it allows no longer) or
   /// "unknown". Error control that meets the limit goes to and fro about it, so the mean stays a little below.
   [[nodiscard]] std::string cause() const;
-  /// Steps that are chosen go far beyond the limit: what is so fast rests, or began at the end.
+  /// Steps that are chosen go far beyond the limit: what is so fast rests for the most part, or began at the end.
   [[nodiscard]] bool fastest_rests() const;
 };
 
-/// Of a run from a time `start` [s], without proposals.
-StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary);
+/// Of a run of a model, from the scene's initial state on, by the vibrations of its modes and without proposals.
+/// \param absolute tolerance of an integrator that chooses its steps
+StepLimit step_limit(const Prepared& prepared, const Integrator& integrator, double absolute,
+                     const RunSummary& summary);
 /// Of a run of the scene itself; where stability limited it, with proposals.
 StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Registry& registry);
 

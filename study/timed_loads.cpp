@@ -32,10 +32,11 @@ struct PushOfLoad {
 /// What time itself changes of a load's efforts on what is free.
 struct ChangeOfLoad {
   bool pushes = false;  ///< at the state
-  bool shakes = false;  ///< what it makes of a displacement
+  std::vector<std::size_t>
+      shaken;  ///< instants at which a displacement makes another effort, the greatest change first
 };
 
-/// Pushes of single loads at instants after a state.
+/// Pushes of loads at instants after a state.
 class Pushes {
  public:
   Pushes(const Configuration& c, const std::vector<Instant>& instants)
@@ -48,7 +49,8 @@ class Pushes {
     const double start_time = instants_.front().time;
     greatest_ = 0;
     const PushOfLoad start = at(start_time, instants_.front(), load);
-    double pushed = 0, shaken = 0, shaken_soon = 0;
+    double pushed = 0;
+    std::vector<double> shaken(instants_.size(), 0.0);
     for (std::size_t k = 1; k < instants_.size(); ++k) {
       const PushOfLoad then = at(instants_[k].time, instants_[k], load);
       if (then.here == start.here && then.displaced == start.displaced) continue;
@@ -56,13 +58,32 @@ class Pushes {
       const PushOfLoad of_place = at(start_time, instants_[k], load);
       pushed = std::max(pushed, std::min(apart(then.here, start.here), apart(then.here, of_place.here)));
       const Eigen::VectorXd by = then.displaced - then.here;
-      const double other =
-          std::min(apart(by, start.displaced - start.here), apart(by, of_place.displaced - of_place.here));
-      shaken = std::max(shaken, other);
-      if (k >= soon && k < up_to) shaken_soon = std::max(shaken_soon, other);
+      shaken[k] = std::min(apart(by, start.displaced - start.here), apart(by, of_place.displaced - of_place.here));
     }
-    const bool pushes = pushed > rounding * greatest_;
-    return {pushes, (pushes ? shaken_soon : shaken) > rounding * greatest_};
+    ChangeOfLoad found{pushed > rounding * greatest_, {}};
+    for (std::size_t k = found.pushes ? soon : 1; k < (found.pushes ? up_to : instants_.size()); ++k)
+      if (shaken[k] > rounding * greatest_) found.shaken.push_back(k);
+    std::sort(found.shaken.begin(), found.shaken.end(),
+              [&](std::size_t a, std::size_t b) { return shaken[a] > shaken[b]; });
+    return found;
+  }
+
+  /// Whether time itself changes what loads make together of small motions, at one of these instants. A displacement
+  /// is finite, and what it makes of a load's square is nothing to these. \param pushed held against all that acts, for
+  /// a law near its limit has nearly no derivative of its own
+  bool small_motions_change(const std::vector<std::size_t>& loads, const std::vector<std::size_t>& at, bool pushed) {
+    if (at.empty() || free_.empty()) return false;
+    const double start_time = instants_.front().time;
+    const Eigen::VectorXd against = pushed ? all_that_acts() : Eigen::VectorXd::Zero(free_count());
+    const double share = pushed ? pushed_equations : differenced_equations;
+    const auto others = [&](const Differenced& a, const Differenced& b) {
+      return other_equations(a, b, share, against).any();
+    };
+    const Differenced start = slopes(start_time, instants_.front().here, loads);
+    return std::any_of(at.begin(), at.end(), [&](std::size_t k) {
+      const Differenced then = slopes(instants_[k].time, instants_[k].here, loads);
+      return others(start, then) && others(slopes(start_time, instants_[k].here, loads), then);
+    });
   }
 
  private:
@@ -81,6 +102,27 @@ class Pushes {
     for (const Eigen::Index s : free_) change = std::max(change, std::abs(a[s] - b[s]));
     return change;
   }
+  [[nodiscard]] Eigen::Index free_count() const { return static_cast<Eigen::Index>(free_.size()); }
+  /// Of efforts on what is free, of loads together.
+  Differenced slopes(double t, const State& place, const std::vector<std::size_t>& loads) {
+    return slopes_anyhow(c_, place, [&](const State& state) {
+      Eigen::VectorXd all = Eigen::VectorXd::Zero(free_count());
+      for (const std::size_t load : loads) all += of(t, state, load)(free_);
+      return all;
+    });
+  }
+  /// What a displacement makes of all forces on what is free, were none to make up for another.
+  Eigen::VectorXd all_that_acts() {
+    const Instant& start = instants_.front();
+    const Tangents now =
+        c_.dynamics().tangents(start.time, start.here.y, c_.dynamics().steady_accelerations(start.time));
+    Eigen::VectorXd by(free_count());
+    for (Eigen::Index i = 0; i < by.size(); ++i) {
+      const std::size_t rate = c_.layout().positions + static_cast<std::size_t>(free_[static_cast<std::size_t>(i)]);
+      by[i] = std::abs(start.displaced.y[rate] - start.here.y[rate]);
+    }
+    return (now.by_position(free_, free_).cwiseAbs() + now.by_speed(free_, free_).cwiseAbs()) * by;
+  }
 
   const Configuration& c_;
   const std::vector<Instant>& instants_;
@@ -88,25 +130,6 @@ class Pushes {
   Work work_;
   double greatest_ = 0;  ///< effort of the load that has been met
 };
-
-/// Whether time itself changes the equations of small motions in some of these instants.
-bool small_motions_change(const Configuration& c, const std::vector<Instant>& instants, std::size_t first,
-                          std::size_t end, double share) {
-  constexpr std::size_t every = 3;  // tangents take longer than efforts
-  const std::vector<Eigen::Index> free = free_speeds(c.held());
-  if (free.empty() && c.layout().continuous == 0) return false;
-  const auto at = [&](double t, const State& there) {
-    return c.dynamics().tangents(t, there.y, c.dynamics().steady_accelerations(t));
-  };
-  const double start = instants.front().time;
-  const Tangents now = at(start, instants.front().here);
-  for (std::size_t k = first; k < end; k += every) {
-    const Tangents then = at(instants[k].time, instants[k].here);
-    if (other_equations(now, then, free, share) && other_equations(at(start, instants[k].here), then, free, share))
-      return true;
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -121,51 +144,65 @@ std::vector<double> times_after(const Configuration& c, const State& state) {
   return times;
 }
 
-bool other_equations(const Tangents& a, const Tangents& b, const std::vector<Eigen::Index>& free, double share) {
-  const auto differs = [share](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
-    return x.size() > 0 &&
-           (x - y).cwiseAbs().maxCoeff() > share * std::max(x.cwiseAbs().maxCoeff(), y.cwiseAbs().maxCoeff());
-  };
-  const auto rows = [&](const Eigen::MatrixXd& m) { return Eigen::MatrixXd(m(free, Eigen::all)); };
-  const auto columns = [&](const Eigen::MatrixXd& m) { return Eigen::MatrixXd(m(Eigen::all, free)); };
-  if (differs(a.by_position(free, free), b.by_position(free, free)) ||
-      differs(a.by_speed(free, free), b.by_speed(free, free)))
-    return true;
-  if (a.rate_by_state.size() == 0) return false;
-  return differs(rows(a.by_state), rows(b.by_state)) ||
-         differs(columns(a.rate_by_position), columns(b.rate_by_position)) ||
-         differs(columns(a.rate_by_speed), columns(b.rate_by_speed)) || differs(a.rate_by_state, b.rate_by_state);
-}
-
 TimedLoads timed_loads(const Configuration& c, const State& state, const Turning& turning) {
   constexpr std::size_t soon = first_soon + 1, up_to = end_of_soon + 1;  // the state itself is the first instant
   const std::vector<Instant> instants = instants_after(c, state, turning, times_after(c, state));
   Pushes pushes(c, instants);
   TimedLoads found;
   const std::vector<LoadNode>& loads = c.prepared().model().loads();
+  std::vector<std::size_t> shaking, shaken;
   for (std::size_t load = 0; load < loads.size(); ++load) {
     const ChangeOfLoad change = pushes.change(load, soon, up_to);
     if (change.pushes) found.pushing.push_back(loads[load].name);
-    if (change.shakes) found.shaking.push_back(loads[load].name);
+    if (!pushes.small_motions_change({load}, change.shaken, change.pushes)) continue;
+    found.shaking.push_back(loads[load].name);
+    shaking.push_back(load);
+    shaken.insert(shaken.end(), change.shaken.begin(), change.shaken.end());
   }
-  const bool calm = found.pushing.empty();
-  // A displacement is finite: what it makes of a load's square is nothing to small motions.
-  if (!found.shaking.empty() && !small_motions_change(c, instants, calm ? 1 : soon, calm ? instants.size() : up_to,
-                                                      calm ? differenced_equations : pushed_equations))
-    found.shaking.clear();
+  // Springs in axes that turn with time may leave the equations as they are together.
+  if (shaking.size() > 1 && !pushes.small_motions_change(shaking, shaken, false)) found.shaking.clear();
   return found;
 }
 
-State displaced_anyhow(const Configuration& c, State state) {
+State displaced_anyhow(const Configuration& c, State state, double times) {
   constexpr double far = 1e-2;  // rad, m, and a second of it
   const Layout& layout = c.layout();
   Eigen::VectorXd by(static_cast<Eigen::Index>(layout.speeds));
   for (Eigen::Index s = 0; s < by.size(); ++s) {
-    by[s] = c.held()[static_cast<std::size_t>(s)] ? 0.0 : far * (1 + std::cos(static_cast<double>(s)) / 2);
+    by[s] = c.held()[static_cast<std::size_t>(s)] ? 0.0 : times * far * (1 + std::cos(static_cast<double>(s)) / 2);
     state.y[layout.positions + static_cast<std::size_t>(s)] += by[s];
   }
   c.dynamics().displace(state.y, by);
   return state;
+}
+
+Differenced slopes_anyhow(const Configuration& c, const State& state,
+                          const std::function<Eigen::VectorXd(const State&)>& reading) {
+  constexpr int levels = 12;  // as adaptive_difference
+  const State displaced = displaced_anyhow(c, state);
+  double place = 0;  // in displacements: no step is to be lost in a coordinate
+  for (std::size_t i = 0; i < state.y.size(); ++i)
+    if (const double by = std::abs(displaced.y[i] - state.y[i]); by > 0)
+      place = std::max(place, std::abs(state.y[i]) / by);
+  return refine_difference([&](double times) { return reading(displaced_anyhow(c, state, times)); }, 1, levels, place);
+}
+
+Eigen::VectorXd other_slopes(const Differenced& a, const Differenced& b) {
+  constexpr double of_change = 10;
+  Eigen::VectorXd others = Eigen::VectorXd::Zero(a.slope.size());
+  for (Eigen::Index i = 0; i < others.size(); ++i) {
+    const double open = of_change * (a.change[i] + b.change[i]) + a.rounding[i] + b.rounding[i];
+    if (const double change = std::abs(b.slope[i] - a.slope[i]) - open; change > 0) others[i] = change;
+  }
+  return others;
+}
+
+Eigen::Array<bool, Eigen::Dynamic, 1> other_equations(const Differenced& a, const Differenced& b, double share,
+                                                      const Eigen::VectorXd& sizes) {
+  constexpr double rounding_of_all = 1e-12;
+  const Eigen::VectorXd own = a.slope.cwiseAbs().cwiseMax(b.slope.cwiseAbs());
+  const double all = own.size() > 0 ? own.maxCoeff() : 0.0;
+  return other_slopes(a, b).array() > (share * own.cwiseMax(sizes).array()).max(rounding_of_all * all);
 }
 
 }  // namespace withy::study

@@ -2,9 +2,11 @@
 /// Loads that change with time themselves.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "withy/core/analysis/adaptive_difference.hpp"
 #include "withy/core/analysis/turn.hpp"
 #include "withy/study/configuration.hpp"
 
@@ -15,7 +17,8 @@ struct TimedLoads {
   /// Their efforts on what is free change: nothing that is balanced now stays so.
   std::vector<std::string> pushing;
   /// They change the equations of small motions, whether they push at the state or not: growth and decay are those of
-  /// one instant. A controller's reference and a force that only time changes leave these equations as they are.
+  /// one instant. A controller's reference and a force that only time changes leave these equations as they are, and so
+  /// does what changes of the square of a displacement. Each load is held against itself, whatever else is stiff.
   std::vector<std::string> shaking;
 };
 
@@ -28,22 +31,30 @@ TimedLoads timed_loads(const Configuration& configuration, const State& state, c
 /// first, and ones all over the rest of the run, in no ratio to each other, for what begins late or is the same after a
 /// period.
 std::vector<double> times_after(const Configuration& configuration, const State& state);
-/// Of these (indices, the end excluded) those at which small motions are looked at where a load pushes: far from where
-/// a law is by then, a controller is at its limit.
+/// Of these (indices, the end excluded) those at which small motions are looked at of a load that pushes: far from
+/// where a law is by then, a controller is at its limit.
 inline constexpr std::size_t first_soon = 7, end_of_soon = 20;
 
-/// Of the greatest element: derivatives of some loads are differences.
+/// Derivatives of what is read off states are others where they change by more than this share of themselves.
 inline constexpr double differenced_equations = 1e-6;
 /// Where a load pushes with time, as a controller whose reference moves: what its limit, which is smooth, makes of that
 /// by then is no change of the law with time.
 inline constexpr double pushed_equations = 1e-4;
 
-/// Whether small motions have other equations there than here, in what is free. \param share of the greatest element
-bool other_equations(const Tangents& here, const Tangents& there, const std::vector<Eigen::Index>& free,
-                     double share = differenced_equations);
-
 /// The state with everything that is free displaced and moving, no two alike: what a load makes of it shows in its
-/// effort, also where it makes nothing of the state itself.
-State displaced_anyhow(const Configuration& configuration, State state);
+/// effort, also where it makes nothing of the state itself. \param times one: by 5 to 15 mrad or mm, and as much a
+/// second
+State displaced_anyhow(const Configuration& configuration, State state, double times = 1);
+
+/// Derivatives of what is read off states, by `times` of displaced_anyhow at none.
+Differenced slopes_anyhow(const Configuration& configuration, const State& state,
+                          const std::function<Eigen::VectorXd(const State&)>& reading);
+
+/// By how much derivatives are others, one a number, beyond what differences leave open: zero where that is all.
+Eigen::VectorXd other_slopes(const Differenced& here, const Differenced& there);
+/// Of derivatives of efforts, one each: whether it is by more than a share of itself, or of a size [N m, N] a
+/// displacement where that is greater, and by more than rounding of the greatest of them.
+Eigen::Array<bool, Eigen::Dynamic, 1> other_equations(const Differenced& here, const Differenced& there, double share,
+                                                      const Eigen::VectorXd& sizes);
 
 }  // namespace withy::study

@@ -9,16 +9,19 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "withy/core/simulation/tips.hpp"
+#include "withy/study/mode_basis.hpp"
 
 namespace withy::study {
 namespace {
 
-/// Part of its own mass from which what a flexible body carries is looked at; part of the deflection by which other
-/// functions have to do better, and bodies of a tree that are looked at; a gravity [m/s²] that bends nothing far.
-constexpr double carries_something = 0.2, noticeable = 0.015, weak = 1e-6;
-constexpr std::size_t few_enough = 20;
+/// Part of its own mass from which what a flexible body carries is looked at; part of the deflection by which functions
+/// are off for a word, and part of that by which others are off at most to be proposed; a gravity [m/s²] that bends
+/// nothing far.
+constexpr double carries_something = 0.2, noticeable = 0.015, better_share = 0.5, weak = 1e-6;
+constexpr std::size_t few_enough = 20;       ///< bodies of a tree that are looked at
 constexpr std::size_t most_functions = 100;  ///< that polynomials have
 
 /// Of each body, its own mass, and that of all that hangs on it without itself.
@@ -71,35 +74,80 @@ Sags sags_of(const SceneValues& values, const std::set<std::string>& bodies, Reg
   return all;
 }
 
-double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
+/// A strain of a body whose functions carry no moment at the tip.
+struct Bending {
+  ModeCount count;
+  std::size_t proposed = 0, richer = 0;  ///< polynomials that are proposed, and those that tell the truth
+};
 
-/// Gives the bending of a body functions that carry a moment at the tip, as many as it has of those that do not; says
-/// which, nothing where it has none.
-std::string carry_moments(const Prepared& prepared, const std::string& name, SceneValues& values) {
-  std::string counts;
-  for (const BodyModes& body : prepared.scene.modes) {
+/// The least number that is proposed: one polynomial is a parabola, which no force at the tip bends a beam to. Two are
+/// those of an even beam at the tip, whatever it carries. More of them tell the truth of those that vary.
+constexpr std::size_t least_polynomials = 2, further_polynomials = 2;
+constexpr const char* moment_at_tip = "orthogonal-polynomials";
+
+std::vector<Bending> without_moment(const Scene& scene, const std::string& name) {
+  std::vector<Bending> all;
+  for (const BodyModes& body : scene.modes) {
     if (body.body != name) continue;
     for (const ModeCount& count : body.counts) {
-      if (count.family_path.empty() || count.family_id() != "clamped-free" || count.modes == 0 ||
-          count.modes > most_functions)
-        continue;
-      values.set("bodies." + name + "." + count.family_path, Value(std::string("orthogonal-polynomials")),
-                 "functions with a moment at the tip");
-      counts += fmt::format("{}{} {}", counts.empty() ? "" : " and ", count.modes, count.strain);
+      if (count.family_path.empty() || count.family_id() != "clamped-free" || count.modes == 0) continue;
+      const std::size_t proposed = std::max(count.modes, least_polynomials), richer = proposed + further_polynomials;
+      if (richer <= std::min(count.most, most_functions)) all.push_back({count, proposed, richer});
     }
   }
-  return counts;
+  return all;
 }
 
-/// How far two lists of deflections are apart, over the greatest of the second.
-double relative_distance(const std::vector<std::array<double, 3>>& ours,
-                         const std::vector<std::array<double, 3>>& theirs) {
+/// The values of a body with polynomials in the place of these functions, below the body.
+std::vector<std::pair<std::string, Value>> with_polynomials(const std::vector<Bending>& strains,
+                                                            std::size_t Bending::*number) {
+  std::vector<std::pair<std::string, Value>> values;
+  for (const Bending& b : strains) {
+    values.emplace_back(b.count.family_path, Value(std::string(moment_at_tip)));
+    values.emplace_back(b.count.path, Value(static_cast<double>(b.*number)));
+  }
+  return values;
+}
+
+/// Where the functions of a strain move the tip.
+Vector3 along(const std::string& strain, const std::array<double, 3>& deflection) {
+  return {0, strain == "bending_z" ? 0 : deflection[1], strain == "bending_y" ? 0 : deflection[2]};
+}
+
+using Deflections = std::vector<std::array<double, 3>>;
+
+/// How far a list of deflections is from the truth where functions of a strain move the tip, over the greatest there.
+double error_along(const std::string& strain, const Deflections& of, const Deflections& truth) {
   double greatest = 0, apart = 0;
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    greatest = std::max(greatest, norm(theirs[i]));
-    apart = std::max(apart, norm({ours[i][0] - theirs[i][0], ours[i][1] - theirs[i][1], ours[i][2] - theirs[i][2]}));
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    const Vector3 right = along(strain, truth[i]);
+    greatest = std::max(greatest, right.norm());
+    apart = std::max(apart, (along(strain, of[i]) - right).norm());
   }
   return greatest > 0 ? apart / greatest : 0;
+}
+
+/// What is said of a body; empty where nothing is to be.
+std::string said_of(const std::vector<Bending>& strains, const Deflections& own, const Deflections& proposed,
+                    const Deflections& truth) {
+  std::string has, better;
+  double off = 0;
+  std::size_t functions = 0;
+  for (const Bending& b : strains) {
+    const std::string& strain = b.count.strain;
+    const double error = error_along(strain, own, truth);
+    if (!(error > noticeable) || !(error_along(strain, proposed, truth) < better_share * error)) continue;
+    const char* const also = has.empty() ? "" : " and ";
+    has += fmt::format("{}{} {}", also, b.count.modes, strain);
+    better += fmt::format("{}{} {}", also, b.proposed, strain);
+    off = std::max(off, error);
+    functions += b.count.modes;
+  }
+  if (has.empty()) return {};
+  return fmt::format(
+      "{} mode{} of clamped-free carr{} no moment at the tip, where other bodies hang: under their weight it deflects "
+      "{:.2g} % otherwise than with more functions that do; choose {} of family: {}, or clamped-loaded with that load",
+      has, functions == 1 ? "" : "s", functions == 1 ? "ies" : "y", 100 * off, better, moment_at_tip);
 }
 
 }  // namespace
@@ -107,33 +155,38 @@ double relative_distance(const std::vector<std::array<double, 3>>& ours,
 void look_at_tip_moments(const Prepared& prepared, Registry& registry, std::vector<Remark>& all) {
   const Model& model = prepared.model();
   const Masses masses = masses_of(model);
-  // Functions without a moment at the tip converge like 1/n where another body hangs there. How far they are, as many
-  // functions that carry one tell: all bodies at once, for each is looked at with all others straight.
-  SceneValues values = prepared.values;
-  std::map<std::string, std::string> counts;
+  // All bodies at once, for each is looked at with all others straight.
+  SceneValues proposed = prepared.values, richer = prepared.values;
+  std::map<std::string, std::vector<Bending>> bending;
   std::set<std::string> bodies;
   for (std::size_t b = 0; b < model.bodies().size() && bodies.size() < few_enough; ++b) {
     const BodyNode& node = model.bodies()[b];
     if (node.body->shape().modes() == 0 || node.segment) continue;
     if (masses.carried[b] < carries_something * masses.own[b]) continue;
-    std::string changed = carry_moments(prepared, node.name, values);
-    if (changed.empty()) continue;
-    counts.emplace(node.name, std::move(changed));
+    std::vector<Bending> strains = without_moment(prepared.scene, node.name);
+    if (strains.empty()) continue;
+    // What is said of each mode, as its damping, may not be there for more of them.
+    if (body_with(prepared.scene, node.name, with_polynomials(strains, &Bending::proposed), registry) == nullptr ||
+        body_with(prepared.scene, node.name, with_polynomials(strains, &Bending::richer), registry) == nullptr)
+      continue;
+    for (const auto& [values, number] : {std::pair(&proposed, &Bending::proposed), {&richer, &Bending::richer}}) {
+      const std::string origin = "functions with a moment at the tip";
+      for (auto& [path, value] : with_polynomials(strains, number))
+        values->set("bodies." + node.name + "." + path, std::move(value), origin);
+      // Coordinates of other functions; the bodies are looked at straight.
+      if (const std::string start = "initial.bodies." + node.name; values->find(start) != nullptr)
+        values->set(start, Value(), origin);
+    }
+    bending.emplace(node.name, std::move(strains));
     bodies.insert(node.name);
   }
   if (bodies.empty()) return;
-  const Sags ours = sags_of(prepared.values, bodies, registry), theirs = sags_of(values, bodies, registry);
-  for (const BodyNode& node : model.bodies()) {
-    const auto own = ours.find(node.name);
-    if (own == ours.end() || node.segment) continue;
-    const double off = relative_distance(own->second, theirs.at(node.name));
-    if (!(off > noticeable)) continue;
-    all.push_back({prepared.scene.source.at("bodies").at(node.name).place(),
-                   fmt::format("{} modes of clamped-free carry no moment at the tip, where other bodies hang: under "
-                               "their weight it deflects {:.2g} % otherwise than with as many of family: "
-                               "orthogonal-polynomials, and that error falls like 1/n only; choose these, or "
-                               "clamped-loaded with that load",
-                               counts.at(node.name), 100 * off)});
+  const Sags own = sags_of(prepared.values, bodies, registry), other = sags_of(proposed, bodies, registry),
+             truth = sags_of(richer, bodies, registry);
+  for (const auto& [name, strains] : bending) {
+    if (!own.contains(name)) continue;
+    std::string text = said_of(strains, own.at(name), other.at(name), truth.at(name));
+    if (!text.empty()) all.push_back({prepared.scene.source.at("bodies").at(name).place(), std::move(text)});
   }
 }
 

@@ -113,13 +113,13 @@ std::vector<GoingOn> rows_to_come(const Configuration& c, const SmallMotions& mo
   return all;
 }
 
-/// All numbers of sensors.
-std::vector<GoingOn> sensed_to_come(const Configuration& c, SmallMotions& motions,
+/// All numbers of sensors, what sampled loads tell as of a sample at each instant.
+std::vector<GoingOn> sensed_to_come(const Configuration& c, SmallMotions& motions, SampledLoads& sampled,
                                     const std::vector<LinearInput>& inputs, const std::vector<std::string>& turning,
                                     const StatesToCome& states) {
   std::vector<std::string> units;
   for (const Column& column : motions.columns()) units.push_back(column.unit);
-  const auto sensed = [&](const State& there) { return motions.sensed(there); };
+  const auto sensed = [&](const State& there) { return motions.sensed(sampled.told_at(there)); };
   std::vector<GoingOn> all = states.look(sensed, units, states.everything());
   for (const LinearInput& input : inputs) {
     // What an input does that turns is told of the input, whatever sees it.
@@ -186,9 +186,9 @@ bool load_changes(const SmallMotions& motions, const StatesToCome& states, std::
   return any.turns || any.shakes;
 }
 
-EndsToCome ends_to_come(const Configuration& c, SmallMotions& motions, const std::vector<LinearInput>& inputs,
-                        const std::vector<LinearOutput>& outputs, const std::vector<std::string>& names,
-                        const StatesToCome& states) {
+EndsToCome ends_to_come(const Configuration& c, SmallMotions& motions, SampledLoads& sampled,
+                        const std::vector<LinearInput>& inputs, const std::vector<LinearOutput>& outputs,
+                        const std::vector<std::string>& names, const StatesToCome& states) {
   EndsToCome found;
   for (const LinearInput& input : inputs)
     if (input_turns(c, motions, input, states)) found.inputs.push_back(input.column.name);
@@ -199,7 +199,7 @@ EndsToCome ends_to_come(const Configuration& c, SmallMotions& motions, const std
   const std::vector<GoingOn> rows =
       has(false) ? rows_to_come(c, motions, outputs, names, states) : std::vector<GoingOn>(outputs.size());
   const std::vector<GoingOn> sensed =
-      has(true) ? sensed_to_come(c, motions, inputs, found.inputs, states) : std::vector<GoingOn>();
+      has(true) ? sensed_to_come(c, motions, sampled, inputs, found.inputs, states) : std::vector<GoingOn>();
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const LinearOutput& o = outputs[k];
     const GoingOn& g = o.sensed >= 0 ? sensed[static_cast<std::size_t>(o.sensed)] : rows[k];

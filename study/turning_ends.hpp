@@ -41,7 +41,7 @@ struct EndsToCome {
 };
 
 /// \param names of the outputs as they were asked for (Ports::outputs)
-EndsToCome ends_to_come(const Configuration& configuration, SmallMotions& motions,
+EndsToCome ends_to_come(const Configuration& configuration, SmallMotions& motions, SampledLoads& sampled,
                         const std::vector<LinearInput>& inputs, const std::vector<LinearOutput>& outputs,
                         const std::vector<std::string>& names, const StatesToCome& states);
 

@@ -1,3 +1,5 @@
+#include <set>
+#include <string>
 
 #include "withy/apps/withy/engine.hpp"
 #include "withy/campaign/plan_schema.hpp"
@@ -16,7 +18,12 @@ ExitStatus schema(const SchemaArguments& arguments) {
     return ExitStatus::done;
   }
   const Plugins plugins(arguments);
-  print(withy::schema(plugins.registry()) + '\n');
+  const std::string text = withy::schema(plugins.registry());
+  print(text + '\n');
+  std::set<std::string> reasons;
+  for (const PluginRecord& record : plugins.host().plugins())
+    if (record.state == PluginRecord::State::refused && reasons.insert(record.reason).second)
+      complain("left out: " + record.reason);
   return ExitStatus::done;
 }
 

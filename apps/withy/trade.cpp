@@ -44,7 +44,8 @@ ExitStatus trade(const TradeArguments& arguments) {
   std::string text =
       arguments.json ? json_text(j) : trade_text(title, study, results, front, engine.registry(), shares);
   if (!arguments.out.empty()) {
-    write_trade(arguments.out, engine.prepared(), j, results, front, engine.registry(), arguments.plugin_directories);
+    write_trade(arguments.out, engine.prepared(), j, results, front, study.outputs(), engine.registry(),
+                arguments.plugin_directories);
     if (!arguments.json) text += folder_text(arguments.out, "trade.csv, trade.svg and trade.json");
   }
   print(text);

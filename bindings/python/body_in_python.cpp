@@ -9,28 +9,101 @@
 #include <variant>
 
 #include "withy/bindings/python/parts_in_python.hpp"
+#include "withy/scene/describe.hpp"
+#include "withy/scene/names.hpp"
 
 namespace withy::python {
 namespace {
 
-/// A member of what Python gives, with a shape. Zero where it is absent. \throws py::value_error where it has another
-std::vector<double> numbers_of(const py::dict& of, const char* key, std::vector<py::ssize_t> shape) {
+/// What a dict of Python says, in the words of its places: "particles[2].mass". Everything thrown is a py::value_error.
+class Said {
+ public:
+  /// \param where empty for the whole \param known its members; any other is refused, with the nearest of these
+  Said(const py::handle& given, std::string where, const std::vector<std::string>& known) : where_(std::move(where)) {
+    of_ = dict_of(given, where_.empty() ? "shape()" : where_);
+    for (const auto& member : of_)
+      if (const std::string key = py::str(member.first); std::find(known.begin(), known.end(), key) == known.end())
+        throw py::value_error(place(key) + ": unknown key " + in_quotes(key) + suggestion(key, known));
+  }
+  [[nodiscard]] bool has(const char* key) const { return of_.contains(key); }
+  [[nodiscard]] std::string place(const std::string& key) const { return where_.empty() ? key : where_ + "." + key; }
+  /// Of the type; it must be there. \param need what that is, in words
+  template <class Type>
+  [[nodiscard]] Type value(const char* key, const char* need) const {
+    if (!has(key)) throw py::value_error(place(key) + ": missing; need " + need);
+    try {
+      return of_[key].cast<Type>();
+    } catch (const py::cast_error&) {
+      throw unlike(place(key), need, of_[key]);
+    }
+  }
+  /// Of a shape, row by row; zero where they are absent.
+  [[nodiscard]] std::vector<double> numbers(const char* key, std::vector<py::ssize_t> shape) const;
+  /// Calls for each item of a list, with the place it has.
+  template <class Act>
+  void each(const char* key, Act&& act) const {
+    int count = 0;
+    for (const py::handle item : iterated(key)) act(item, place(key) + "[" + std::to_string(count++) + "]");
+  }
+  /// Calls for each member of a dict, with its name and place.
+  template <class Act>
+  void each_named(const char* key, Act&& act) const {
+    for (const auto& [name, item] : dict_of(of_[key], place(key)))
+      act(std::string(py::str(name)), item, place(key) + "." + std::string(py::str(name)));
+  }
+
+ private:
+  static py::value_error unlike(const std::string& where, const char* need, const py::handle& got) {
+    return py::value_error(where + ": need " + need + ", not " + Py_TYPE(got.ptr())->tp_name);
+  }
+  static py::dict dict_of(const py::handle& given, const std::string& where) {
+    try {
+      return given.cast<py::dict>();
+    } catch (const std::exception&) {
+      throw unlike(where, "a dict", given);
+    }
+  }
+  [[nodiscard]] py::iterator iterated(const char* key) const {
+    try {
+      return py::iter(of_[key]);
+    } catch (const py::error_already_set&) {
+      throw unlike(place(key), "a list of dicts", of_[key]);
+    }
+  }
+
+  py::dict of_;
+  std::string where_;
+};
+
+std::vector<double> Said::numbers(const char* key, std::vector<py::ssize_t> shape) const {
   std::size_t count = 1;
   for (const py::ssize_t n : shape) count *= static_cast<std::size_t>(n);
   std::vector<double> numbers(count);
-  if (!of.contains(key)) return numbers;
-  const Array given = numbers_given(of[key], key);
-  if (!std::equal(shape.begin(), shape.end(), given.shape(), given.shape() + given.ndim()))
-    throw py::value_error(std::string(key) + ": need the shape " + std::string(py::str(py::cast(shape))));
-  std::copy_n(given.data(), count, numbers.begin());
+  if (!has(key)) return numbers;
+  const std::string where = place(key);
+  if (of_[key].is_none()) throw unlike(where, "numbers", of_[key]);  // to numpy it is NaN
+  try {
+    const Array given(of_[key]);
+    if (!std::equal(shape.begin(), shape.end(), given.shape(), given.shape() + given.ndim()))
+      throw py::value_error(where + ": need the shape " + std::string(py::str(py::cast(shape))));
+    std::copy_n(given.data(), count, numbers.begin());
+  } catch (const py::error_already_set& e) {  // numpy's, which does not know what it was asked for
+    throw py::value_error(where + ": " + std::string(py::str(e.value())));
+  }
   return numbers;
 }
 
-PointExpansion expansion_of(const py::dict& of, py::ssize_t n) {
-  PointExpansion at = PointExpansion::rigid(Vector3(numbers_of(of, "position", {3}).data()), n);
+/// What says where a point is and how it moves with the modes, beside these.
+std::vector<std::string> point_members(std::vector<std::string> others) {
+  others.insert(others.end(), {"position", "phi", "psi", "gamma", "theta"});
+  return others;
+}
+
+PointExpansion expansion_of(const Said& of, py::ssize_t n) {
+  PointExpansion at = PointExpansion::rigid(Vector3(of.numbers("position", {3}).data()), n);
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const auto phi = numbers_of(of, "phi", {3, n}), psi = numbers_of(of, "psi", {3, n}),
-             gamma = numbers_of(of, "gamma", {3, n, n}), theta = numbers_of(of, "theta", {3, n, n});
+  const auto phi = of.numbers("phi", {3, n}), psi = of.numbers("psi", {3, n}), gamma = of.numbers("gamma", {3, n, n}),
+             theta = of.numbers("theta", {3, n, n});
   at.phi = Eigen::Map<const Rows>(phi.data(), 3, n);
   at.psi = Eigen::Map<const Rows>(psi.data(), 3, n);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -42,25 +115,29 @@ PointExpansion expansion_of(const py::dict& of, py::ssize_t n) {
 
 class PythonBody final : public Body {
  public:
-  explicit PythonBody(const py::dict& given) {
-    if (given.contains("modes")) shape_.mode_names = given["modes"].cast<std::vector<std::string>>();
+  explicit PythonBody(const py::object& shape) {
+    const Said given(shape, "", {"modes", "particles", "sections", "stations", "stiffness", "damping", "length"});
+    if (given.has("modes")) shape_.mode_names = given.value<std::vector<std::string>>("modes", "a list of names");
     const auto n = static_cast<py::ssize_t>(shape_.modes());
-    for (const py::handle each : given["particles"]) {
-      const auto particle = each.cast<py::dict>();
-      shape_.particles.push_back({particle["mass"].cast<double>(), expansion_of(particle, n)});
-    }
-    for (const py::handle each : given.contains("sections") ? given["sections"].cast<py::list>() : py::list()) {
-      const auto section = each.cast<py::dict>();
-      shape_.sections.push_back({Matrix3(numbers_of(section, "inertia", {3, 3}).data()), expansion_of(section, n)});
-    }
-    const auto stiffness = numbers_of(given, "stiffness", {n, n}), damping = numbers_of(given, "damping", {n, n});
+    if (given.has("particles"))
+      given.each("particles", [&](const py::handle& each, std::string where) {
+        const Said particle(each, std::move(where), point_members({"mass"}));
+        shape_.particles.push_back({particle.value<double>("mass", "a number"), expansion_of(particle, n)});
+      });
+    if (given.has("sections"))
+      given.each("sections", [&](const py::handle& each, std::string where) {
+        const Said section(each, std::move(where), point_members({"inertia"}));
+        shape_.sections.push_back({Matrix3(section.numbers("inertia", {3, 3}).data()), expansion_of(section, n)});
+      });
+    const auto stiffness = given.numbers("stiffness", {n, n}), damping = given.numbers("damping", {n, n});
     shape_.stiffness = Eigen::Map<const Eigen::MatrixXd>(stiffness.data(), n, n);
     shape_.damping = Eigen::Map<const Eigen::MatrixXd>(damping.data(), n, n);
-    if (given.contains("length")) shape_.length = given["length"].cast<double>();
+    if (given.has("length")) shape_.length = given.value<double>("length", "a number");
     stations_.emplace("root", PointExpansion::rigid(Vector3::Zero(), n));
-    if (given.contains("stations"))
-      for (const auto& [name, at] : given["stations"].cast<std::map<std::string, py::dict>>())
-        stations_.insert_or_assign(name, expansion_of(at, n));
+    if (given.has("stations"))
+      given.each_named("stations", [&](const std::string& name, const py::handle& at, std::string where) {
+        stations_.insert_or_assign(name, expansion_of(Said(at, std::move(where), point_members({})), n));
+      });
     check();
   }
   const ModalShape& shape() const override { return shape_; }
@@ -112,7 +189,7 @@ std::unique_ptr<Body> make_python_body(const Value& p, const MakeContext& contex
   const py::object* object = object_of(p, context);
   if (object == nullptr) return nullptr;
   try {
-    return std::make_unique<PythonBody>(object->attr("shape")().cast<py::dict>());
+    return std::make_unique<PythonBody>(object->attr("shape")());
   } catch (const std::exception& e) {
     context.diagnostics.error(p.at("object").place(), std::string("Python: ") + e.what());
   }

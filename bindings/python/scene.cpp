@@ -68,7 +68,9 @@ py::tuple tuple_of(Result result) {
 void bind_scene(py::module_& m) {
   py::class_<Library>(m, "Library")
       .def(py::init(&open_library), py::arg("plugins"), py::arg("log"))
-      .def("schema", [](const Library& l) { return withy::schema(l.registry()); });
+      .def("schema", [](const Library& l) {
+        return withy::schema(l.registry(), [&l](const std::string& why) { l.log("left out: " + why); });
+      });
   const auto axes = [](const std::vector<std::string>& formulations, const std::vector<std::string>& families,
                        const std::vector<int>& modes, const std::vector<std::string>& integrators,
                        const std::vector<double>& tolerances) {

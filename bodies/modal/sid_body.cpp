@@ -50,7 +50,8 @@ class SidBody final : public Body {
     for (const sid::Node& node : data.nodes) nodes_.emplace_back(node.id, expansion_of(node, n));
     root_ = PointExpansion::rigid(Vector3::Zero(), n);
     if (!options.root.empty()) {
-      const auto root = node(options.root);
+      // A node by the name of the file's own frame goes before that.
+      const auto root = options.root == "root" && !node("root") ? root_ : node(options.root);
       if (!root)
         throw std::domain_error(
             fmt::format("there is no node '{}' for a root; nodes are {}", options.root, stations()));

@@ -24,7 +24,7 @@ constexpr double first_change = 1e-3;
 /// the columns of Z the free motions, Zᵀ M Z = 1.
 class StatesAbout {
  public:
-  StatesAbout(const Model& model, const EquationsOfMotion& equations, const State& state)
+  StatesAbout(const Model& model, const EquationsOfMotion& equations, const State& state, const Held& resting)
       : equations_(equations),
         loops_(dynamic_cast<const ClosedLoops&>(equations)),
         layout_(model.layout()),
@@ -33,7 +33,7 @@ class StatesAbout {
         slope_(equations.size()) {
     const Held held = driven_speeds(model, state);
     for (std::size_t i = 0; i < held.size(); ++i)
-      if (!held[i]) free_.push_back(static_cast<Eigen::Index>(i));
+      if (!held[i] && (resting.empty() || !resting[i])) free_.push_back(static_cast<Eigen::Index>(i));
     find_motions();
     find_rates();
   }
@@ -127,9 +127,10 @@ Eigen::VectorXd StatesAbout::slope(Eigen::Index coordinate, double by) {
 
 }  // namespace
 
-FastestPole fastest_pole_of_loops(const Model& model, const EquationsOfMotion& equations, const State& state) {
+FastestPole fastest_pole_of_loops(const Model& model, const EquationsOfMotion& equations, const State& state,
+                                  const Held& resting) {
   FastestPole result;
-  StatesAbout about(model, equations, state);
+  StatesAbout about(model, equations, state, resting);
   if (about.motions() == 0) return result;
   Eigen::MatrixXd A(about.size(), about.size());
   for (Eigen::Index j = 0; j < A.cols(); ++j)

@@ -11,7 +11,9 @@ namespace withy {
 /// multipliers do as loops turn is in it. No cause is told; `of_load` where the pole is notably beyond the fastest
 /// vibration of modes alone, or where a load has states of its own.
 /// \param equations of closed loops (ClosedLoops)
+/// \param resting speeds that stay as they are beside the driven ones; empty: none
 /// \throws std::domain_error where the state cannot be evaluated, or anything is not finite.
-FastestPole fastest_pole_of_loops(const Model& model, const EquationsOfMotion& equations, const State& state);
+FastestPole fastest_pole_of_loops(const Model& model, const EquationsOfMotion& equations, const State& state,
+                                  const Held& resting = {});
 
 }  // namespace withy

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/kinks.hpp"
 #include "withy/core/plugin/plugin_call.hpp"
 
@@ -49,11 +50,20 @@ std::size_t discrete_states(const DiscretePart& part, const std::string& who) {
   throw std::invalid_argument(text.str());
 }
 
+/// Names of the continuous states, each as that of an element of State.
+std::vector<std::string> continuous_names(const ContinuousPart& part, const std::string& name, const std::string& who) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0, count = counted(part.states(), who, "continuous states"); i < count; ++i)
+    names.push_back(part.name(i));
+  if (const std::string fault = state_names_fault(names); !fault.empty())
+    throw std::invalid_argument(who + " has continuous states that cannot be: " + fault);
+  for (std::string& each : names) each.insert(0, name + ".");
+  return names;
+}
+
 Kept kept_by(const BoundLoad& load, const std::string& name, const std::string& who) {
   Kept kept{counted(load.scratch(), who, "numbers of scratch space"), load.continuous(), {}, 0};
-  if (kept.continuous != nullptr)
-    for (std::size_t i = 0, count = counted(kept.continuous->states(), who, "continuous states"); i < count; ++i)
-      kept.names.push_back(name + "." + kept.continuous->name(i));
+  if (kept.continuous != nullptr) kept.names = continuous_names(*kept.continuous, name, who);
   if (const DiscretePart* part = load.discrete(); part != nullptr) kept.discrete = discrete_states(*part, who);
   if (const auto* kinked = dynamic_cast<const Kinks*>(&load); kinked != nullptr)
     static_cast<void>(counted(kinked->kinks(), who, "kinks"));

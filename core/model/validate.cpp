@@ -60,17 +60,17 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// Of a name, which is that of an object in HDF5 too.
-bool is_no_column(const std::string& name) { return breaks_heads(name, ",\"/"); }
-
-constexpr const char* column_rule = " has a name with a comma, a quotation mark, a slash or a control character";
+/// What is wrong with the name of a column, which is that of an object in HDF5 too; empty: nothing.
+std::string name_fault(const std::string& name) {
+  if (!is_utf8(name)) return " has a name that is not UTF-8";
+  return breaks_heads(name, ",\"/") ? " has a name with a comma, a quotation mark, a slash or a control character" : "";
+}
 
 std::string names_fault(const std::vector<std::string>& names) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty()) return "a mode has no name";
-    if (!is_utf8(names[i])) return "mode " + std::to_string(i + 1) + " has a name that is not UTF-8";
-    if (is_no_column(names[i])) return "mode " + std::to_string(i + 1) + column_rule;
+    if (std::string fault = name_fault(names[i]); !fault.empty()) return "mode " + std::to_string(i + 1) + fault;
     if (!seen.insert(spelled_in_tables(names[i])).second) return "two modes are named '" + names[i] + "'";
   }
   for (const std::string& name : seen)
@@ -175,13 +175,23 @@ std::string find_fault(const std::vector<SensorColumn>& columns) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const SensorColumn& c = columns[i];
     const std::string which = "number " + std::to_string(i + 1);
-    if (!is_utf8(c.component)) return which + " has a name that is not UTF-8";
+    if (std::string fault = name_fault(c.component); !fault.empty()) return which + fault;
     if (!is_utf8(c.unit)) return which + " has a unit that is not UTF-8";
-    if (is_no_column(c.component)) return which + column_rule;
     if (breaks_heads(c.unit, ",\"[]"))
       return which + " has a unit with a comma, a quotation mark, a bracket or a control character";
     if (!seen.insert(spelled_in_tables(c.component)).second)
       return c.component.empty() ? "two have no name" : "two are named '" + c.component + "'";
+  }
+  return {};
+}
+
+std::string state_names_fault(const std::vector<std::string>& names) {
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string which = "number " + std::to_string(i + 1);
+    if (names[i].empty()) return which + " has no name";
+    if (std::string fault = name_fault(names[i]); !fault.empty()) return which + fault;
+    if (!seen.insert(spelled_in_tables(names[i])).second) return "two are named '" + names[i] + "'";
   }
   return {};
 }

@@ -47,5 +47,8 @@ std::string find_fault(const Rod& rod, const ModalShape& shape);
 /// What is wrong with the numbers that a sensor says it gives, or empty: none at all, two of one name, a name or unit
 /// that the head of a table cannot hold, as one with a comma.
 std::string find_fault(const std::vector<SensorColumn>& columns);
+/// What is wrong with the names of a load's continuous states, or empty: none, two alike, or one that the head of a
+/// table cannot hold. States are kept by these names, and two of one name are not read back.
+std::string state_names_fault(const std::vector<std::string>& names);
 
 }  // namespace withy

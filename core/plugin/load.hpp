@@ -103,7 +103,8 @@ class ContinuousPart {
   virtual ~ContinuousPart() = default;
   /// Count of continuous states; 0: efforts follow the whole state at once, without memory.
   [[nodiscard]] virtual std::size_t states() const = 0;
-  /// Name of one of them: "integral". With the load's name it is that of the element of State.
+  /// Name of one of them: "integral". With the load's name it is that of the element of State. Of each its own, UTF-8,
+  /// not empty, without comma, quotation mark, slash and control character.
   [[nodiscard]] virtual std::string name(std::size_t state) const = 0;
   /// Sets them for the start of a motion at the state in `view`, whose `continuous` means nothing.
   virtual void begin(const LoadView& view, std::span<double> continuous) const noexcept = 0;

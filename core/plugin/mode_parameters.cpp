@@ -6,6 +6,16 @@
 namespace withy {
 namespace {
 
+/// Of bending, or where there is none what names a family of modes: other strains have no role that studies vary.
+const ParameterSpec* family_in(const std::vector<ParameterSpec>& specs) {
+  const ParameterSpec* named = nullptr;
+  for (const ParameterSpec& spec : specs) {
+    if (spec.role == ParameterSpec::Role::bending_family) return &spec;
+    if (named == nullptr && spec.refers == ParameterSpec::Refers::mode_family) named = &spec;
+  }
+  return named;
+}
+
 void collect(const Value& map, const std::vector<ParameterSpec>& specs, const std::string& prefix,
              std::vector<ModeCount>& counts) {
   for (const ParameterSpec& spec : specs) {
@@ -19,11 +29,8 @@ void collect(const Value& map, const std::vector<ParameterSpec>& specs, const st
     count.modes = static_cast<std::size_t>(given->number());
     count.least = static_cast<std::size_t>(spec.minimum.value_or(0));
     count.most = spec.maximum ? static_cast<std::size_t>(*spec.maximum) : std::numeric_limits<std::size_t>::max();
-    const auto family = std::find_if(specs.begin(), specs.end(), [](const ParameterSpec& s) {
-      return s.role == ParameterSpec::Role::bending_family;
-    });
-    if (family != specs.end()) {
-      count.family_path = prefix + family->key;
+    if (const ParameterSpec* family = family_in(specs)) {
+      if (family->role == ParameterSpec::Role::bending_family) count.family_path = prefix + family->key;
       if (const Value* chosen = map.find(family->key)) count.family = *chosen;
     }
     counts.push_back(std::move(count));

@@ -17,7 +17,7 @@ struct ModeCount {
   std::size_t modes = 0;
   std::size_t least = 0, most = 0;  ///< allowed
   std::string family_path;          ///< of the bending family beside it, as "bending_y.family"; empty: none
-  Value family;                     ///< the family given: a name, or a map with `name`; null: none
+  Value family;  ///< the family given, of bending or another strain: a name, or a map with `name`; null: none
   /// The family's id; empty where there is none.
   [[nodiscard]] std::string family_id() const;
 };

@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "withy/core/plugin/turned_sections.hpp"
 #include "withy/core/shape/modal_mass.hpp"
@@ -15,7 +17,8 @@ const ParameterSpec* spec_of(const std::vector<ParameterSpec>& specs, std::strin
   return it == specs.end() ? nullptr : &*it;
 }
 
-/// The rows of a table from x0 to x1 [m], linear between its rows, with x counted from x0.
+/// The rows of a table from x0 to x1 [m], linear between its rows, with x counted from x0. A row that is at an end but
+/// for rounding is that end; of a jump there, two rows close together, the part has the side that it lies on.
 Value cut(const Value& table, double x0, double x1) {
   std::vector<std::vector<double>> rows;
   for (const Value& row : table.items()) rows.push_back(row.numbers());
@@ -29,6 +32,10 @@ Value cut(const Value& table, double x0, double x1) {
     for (std::size_t c = 1; c < row.size(); ++c) row[c] += share * ((*after)[c] - row[c]);
     return row;
   };
+  const double rounding = 1e-9 * (x1 - x0);
+  const auto is_at = [&](double x) { return [=](const auto& row) { return std::abs(row.front() - x) <= rounding; }; };
+  const auto last = std::find_if(rows.rbegin(), rows.rend(), is_at(x0));
+  const auto first = std::find_if(rows.begin(), rows.end(), is_at(x1));
   Value result = Value::list({}, table.place());
   const auto add = [&](std::vector<double> row, double x) {
     row.front() = x;
@@ -36,13 +43,11 @@ Value cut(const Value& table, double x0, double x1) {
     for (const double number : row) items.items().emplace_back(number, table.place());
     result.items().push_back(std::move(items));
   };
-  // A row that is at an end but for rounding is that end.
-  const double rounding = 1e-9 * (x1 - x0);
-  add(at(x0), 0);
+  add(last != rows.rend() ? *last : at(x0), 0);
   for (const auto& row : rows) {
     if (row.front() > x0 + rounding && row.front() < x1 - rounding) add(row, row.front() - x0);
   }
-  add(at(x1), x1 - x0);
+  add(first != rows.end() ? *first : at(x1), x1 - x0);
   return result;
 }
 
@@ -65,12 +70,21 @@ std::vector<Eigen::MatrixXd> stiffness_by_strain(const Body& body) {
 
 class DampedSegment final : public Body, public TurnedSections {
  public:
-  DampedSegment(std::unique_ptr<Body> segment, ModalShape shape)
+  DampedSegment(std::shared_ptr<const Body> segment, ModalShape shape)
       : segment_(std::move(segment)), shape_(std::move(shape)) {}
   const ModalShape& shape() const override { return shape_; }
   std::optional<PointExpansion> station(const StationName& name) const override { return segment_->station(name); }
   std::string stations() const override { return segment_->stations(); }
   std::string measured_station() const override { return segment_->measured_station(); }
+  std::vector<std::string> measured_beside() const override { return segment_->measured_beside(); }
+  /// Kinematics are of the second order, which leaves K, and D with it.
+  std::shared_ptr<const Body> expanded(const StrainKinematics& kinematics) const override {
+    const std::shared_ptr<const Body> segment = segment_->expanded(kinematics);
+    if (segment == nullptr) return nullptr;
+    ModalShape shape = segment->shape();
+    shape.damping = shape_.damping;
+    return std::make_shared<const DampedSegment>(segment, std::move(shape));
+  }
   const Rod* rod() const override { return segment_->rod(); }
   std::optional<BodyCut> cut(double x) const override { return segment_->cut(x); }
   Matrix3 section_axes(double x) const override {
@@ -81,7 +95,7 @@ class DampedSegment final : public Body, public TurnedSections {
   std::vector<std::string> remarks() const override { return segment_->remarks(); }
 
  private:
-  std::unique_ptr<Body> segment_;
+  std::shared_ptr<const Body> segment_;
   ModalShape shape_;
 };
 
@@ -94,6 +108,7 @@ class SegmentedBody final : public Body {
   std::optional<PointExpansion> station(const StationName& name) const override { return whole_->station(name); }
   std::string stations() const override { return whole_->stations(); }
   std::string measured_station() const override { return whole_->measured_station(); }
+  std::vector<std::string> measured_beside() const override { return whole_->measured_beside(); }
   const Rod* rod() const override { return whole_->rod(); }
   std::vector<std::string> remarks() const override { return whole_->remarks(); }
   std::span<const std::shared_ptr<const Body>> segments() const override { return segments_; }
@@ -116,7 +131,6 @@ Value segment_of(const Value& body, const std::vector<ParameterSpec>& specs, std
 struct StrainedMode {
   double square;           ///< ω² [1/s²]
   double time;             ///< τ = vᵀDv/vᵀKv [s]
-  bool lowest;             ///< of those it is coupled with
   Eigen::VectorXd shares;  ///< of its strain energy, by strain
 };
 
@@ -130,7 +144,6 @@ void add_modes_of(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd&
                    Eigen::MatrixXd::Identity(n, n)};
   if (Eigen::LLT<Eigen::MatrixXd>(inertia).info() == Eigen::Success) found = vibrations(stiffness, inertia);
   const double greatest = found.squares.maxCoeff();
-  const std::size_t first = modes.size();
   for (Eigen::Index k = 0; k < n; ++k) {
     if (found.squares[k] <= 0 || is_rounding(found.squares[k], greatest)) continue;  // a motion without strain
     const Eigen::VectorXd v = found.vectors.col(k);
@@ -139,11 +152,8 @@ void add_modes_of(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd&
       energies[static_cast<Eigen::Index>(s)] = std::max(0.0, v.dot(strains[s](group, group) * v));
     if (!(energies.sum() > 0)) continue;
     const double dissipation = std::max(0.0, v.dot(D(group, group) * v));
-    modes.push_back({found.squares[k], dissipation / energies.sum(), false, energies / energies.sum()});
+    modes.push_back({found.squares[k], dissipation / energies.sum(), energies / energies.sum()});
   }
-  const auto slower = [](const StrainedMode& a, const StrainedMode& b) { return a.square < b.square; };
-  const auto lowest = std::min_element(modes.begin() + static_cast<std::ptrdiff_t>(first), modes.end(), slower);
-  if (lowest != modes.end()) lowest->lowest = true;
 }
 
 /// τ [s] of damping Σ τ_s K_s by strain (in_segments). What a strain takes of a mode is the mode's share in it, until
@@ -169,13 +179,16 @@ Eigen::VectorXd time_constants(const Body& whole) {
   }
   for (Eigen::Index s = 0; s < times.size(); ++s)
     if (left[s] < 1) times[s] /= 1 - left[s];
-  // The lowest modes exactly, by the strains that count them, unless lower ones have filled these.
-  for (std::size_t k = 0; k < modes.size(); ++k) {
-    const double counted = modes[k].shares.dot(taken[k]);
-    if (!modes[k].lowest || counted < 1e-3) continue;
-    times += (modes[k].time - modes[k].shares.dot(times)) / counted * taken[k];
+  // Modes whose strains no lower ones have filled, as the first of either plane, exactly by these strains. The weight
+  // goes to zero with what is not filled, half of it: a slight coupling changes it slightly. The lowest of all is last,
+  // and stays exact.
+  for (std::size_t k = modes.size(); k-- > 0;) {
+    const double weight = 2 * taken[k].sum() - 1;
+    if (weight <= 0) continue;
+    const double miss = modes[k].time - modes[k].shares.dot(times);
+    times = (times + weight * miss / modes[k].shares.dot(taken[k]) * taken[k]).cwiseMax(0);
   }
-  return times.cwiseMax(0);
+  return times;
 }
 
 std::unique_ptr<Body> damped_as(const Eigen::VectorXd& times, std::unique_ptr<Body> segment) {
@@ -202,6 +215,16 @@ std::unique_ptr<Body> in_segments(std::unique_ptr<Body> whole, const Value& valu
     segments.push_back(damped_as(times, std::move(segment)));
   }
   return std::make_unique<SegmentedBody>(std::move(whole), std::move(segments));
+}
+
+std::optional<SegmentPlace> place_in_segments(std::span<const double> lengths, double x) {
+  constexpr double rounding = 1e-9;
+  const double whole = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  if (lengths.empty() || !(x >= -rounding * whole && x <= (1 + rounding) * whole)) return {};
+  std::size_t k = 0;
+  double root = 0;
+  while (k + 1 < lengths.size() && x >= root + (1 - rounding) * lengths[k]) root += lengths[k++];
+  return SegmentPlace{k, std::clamp(x - root, 0.0, lengths[k])};
 }
 
 }  // namespace withy

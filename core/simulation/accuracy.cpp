@@ -109,7 +109,7 @@ std::string body_of_speed(const Model& model, std::size_t speed) {
   return {};
 }
 
-/// Calls act(speed, system without it) for the highest mode of every family of every body.
+/// Calls act(speed, system without it) for the highest mode of every family of every body that is not prescribed.
 template <class Act>
 void without_highest_modes(const Model& model, const DenseSystem& system, Act&& act) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
@@ -118,6 +118,9 @@ void without_highest_modes(const Model& model, const DenseSystem& system, Act&& 
     for (const ModeGroup& group : mode_groups(model.bodies()[b].body->shape())) {
       // As a prescribed speed it takes no part.
       const std::size_t speed = slot->speed + static_cast<std::size_t>(group.coordinates.back());
+      if (std::any_of(system.prescribed.begin(), system.prescribed.end(),
+                      [speed](const PrescribedRate& p) { return p.speed == speed; }))
+        continue;
       DenseSystem without = system;
       without.prescribed.push_back({speed, 0});
       act(speed, without);
@@ -216,6 +219,7 @@ std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& syste
 std::optional<UnsolvableRate> unsolvable_rate(const Model& model, const EquationsOfMotion& equations,
                                               const State& state) {
   const Layout& layout = model.layout();
+  if (const auto hinge = nonfinite_hinge(model, state, 0)) return UnsolvableRate{hinge->hinge, hinge->why};
   if (layout.speeds == 0 || layout.speeds > largest_examined) return {};
   const FaultyRate rate = faulty_rate(model, equations, state, equations.system(state.time, state.y));
   const std::string& name = layout.speed_names[rate.speed];

@@ -69,16 +69,19 @@ struct Slowing {
   double fastest = 0;  ///< [rad/s], the fastest vibration of what is left; 0 where nothing vibrates
 };
 
-/// The highest mode of a body without which the fastest vibration is slowest; nothing where there are no modes.
+/// The highest mode of a body without which the fastest vibration is slowest, of those that are not prescribed; nothing
+/// where there are none.
 /// \param rows as fastest_mode
 std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system, const Eigen::MatrixXd& rows = {});
 
-/// A rate of a hinge for which the equations cannot be solved, whatever the accuracy.
+/// A hinge for a rate of which the equations cannot be solved, whatever the accuracy.
 struct UnsolvableRate {
   std::size_t hinge = 0;
-  std::string why;  ///< that it moves no mass beyond rounding, or inertia beyond the range of numbers
+  /// That its motion is not finite there, or that it moves no mass beyond rounding, or inertia beyond the range of
+  /// numbers.
+  std::string why;
 };
-/// The first at a state, of at most `largest_examined` speeds; nothing where there is none.
+/// The first at a state; nothing where there is none. Inertia is looked at of at most `largest_examined` speeds.
 std::optional<UnsolvableRate> unsolvable_rate(const Model& model, const EquationsOfMotion& equations,
                                               const State& state);
 

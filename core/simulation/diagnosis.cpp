@@ -112,6 +112,28 @@ std::string describe_held(const Model& model, const State& state) {
 
 std::string shown_number(double x) { return std::isnan(x) ? "nan" : brief(x); }
 
+bool all_finite_numbers(std::span<const double> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
+/// What of a hinge's motion is not finite; null: nothing is, or its coordinates and rates are not.
+const char* nonfinite_part(const Hinge& hinge, std::span<const double> x, std::span<const double> rates) {
+  if (!all_finite_numbers(x) || !all_finite_numbers(rates)) return nullptr;
+  HingeMotion m;
+  m.H.setZero(6, static_cast<Eigen::Index>(rates.size()));
+  hinge.motion(x, rates, m);
+  if (!m.pose.R.allFinite() || !m.pose.p.allFinite()) return "pose";
+  if (!m.H.allFinite()) return "H";
+  return m.bias.allFinite() ? nullptr : "bias";
+}
+
+/// \param part of its motion
+std::string nonfinite_at(const std::string& hinge, const char* part, std::span<const double> x) {
+  std::string text = std::string("the ") + part + " of hinge '" + hinge + "' is not finite where its coordinate";
+  for (std::size_t i = 0; i < x.size(); ++i) text += (i > 0 ? ", " : (x.size() == 1 ? " is " : "s are ")) + brief(x[i]);
+  return text;
+}
+
 }  // namespace
 
 std::string nonfinite_number(const Layout& layout, const State& state) {
@@ -292,8 +314,33 @@ NonfiniteRates nonfinite_rates(const Model& model, const State& state, double ah
   return found;
 }
 
+std::optional<NonfiniteHinge> nonfinite_hinge(const Model& model, const State& state, double ahead) {
+  const Layout& layout = model.layout();
+  if (state.y.size() != layout.size()) return {};  // of equations that are another's
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Hinge& hinge = *model.hinges()[h].hinge;
+    if (hinge.kernel()) continue;
+    const Slot& slot = layout.hinges[h];
+    const auto here = std::span(state.y).subspan(slot.position, slot.positions);
+    const auto rates = std::span(state.y).subspan(layout.positions + slot.speed, slot.speeds);
+    std::vector<double> x(slot.positions), x_dot(slot.positions);
+    hinge.derivatives(here, rates, x_dot);
+    // As far as it goes by these rates: the last state may be before the place where it fails.
+    for (double after = 0; after <= ahead; after = after > 0 ? 2 * after : ahead * 0x1p-30) {
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] = here[i] + after * x_dot[i];
+      hinge.normalize(x);
+      if (const char* part = nonfinite_part(hinge, x, rates))
+        return NonfiniteHinge{h, nonfinite_at(model.hinges()[h].name, part, x)};
+      if (!(ahead > 0)) break;
+    }
+  }
+  return {};
+}
+
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead) {
+  // Before the loads: what one measures beyond such a hinge is not finite either.
+  if (const auto hinge = nonfinite_hinge(model, state, ahead)) return hinge->why;
   if (const std::string loads = nonfinite_loads(model, equations, state, ahead); !loads.empty()) return loads;
   if (const std::string held = describe_held(model, state); !held.empty()) return held;
   const Layout& layout = equations.layout();

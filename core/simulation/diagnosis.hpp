@@ -78,8 +78,17 @@ NonfiniteRates nonfinite_rates(const Model& model, const State& state, double ah
 /// Empty where all are finite, or the state has another count of numbers than the layout.
 std::string nonfinite_number(const Layout& layout, const State& state);
 
-/// Names what is not finite at the state or, for loads, up to `ahead` seconds later: loads, what they hold,
-/// coordinates, speeds, accelerations. Empty where all of it is finite.
+/// A hinge whose motion is not finite where its coordinates and rates are.
+struct NonfiniteHinge {
+  std::size_t hinge = 0;  ///< index in Model::hinges()
+  std::string why;        ///< "the pose of hinge 'track' is not finite where its coordinate is 0.5"
+};
+/// The first at a state or where it comes to at its rates up to `ahead` seconds later; nothing where all are finite.
+/// Hinges of known motion (Hinge::kernel) are not looked at.
+std::optional<NonfiniteHinge> nonfinite_hinge(const Model& model, const State& state, double ahead);
+
+/// Names what is not finite at the state or, for hinges and loads, up to `ahead` seconds later: hinges, loads, what
+/// they hold, coordinates, speeds, accelerations. Empty where all of it is finite.
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "withy/core/kinematics/loop_paths.hpp"
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/measured_place.hpp"
@@ -27,10 +28,13 @@ bool may_float(const Model& model) {
   return floats;
 }
 
-/// Why a state has no energy: one of its numbers is none, or the greatest of its speeds, squared, is beyond all.
-std::string without_energy(const Layout& layout, const State& state) {
+/// Why a state has no energy: one of its numbers is none, a hinge's motion is not finite there, or the greatest of its
+/// speeds, squared, is beyond all.
+std::string without_energy(const Model& model, const State& state) {
+  const Layout& layout = model.layout();
   if (const std::string number = nonfinite_number(layout, state); !number.empty())
     return "the energy is not finite: " + number;
+  if (const auto hinge = nonfinite_hinge(model, state, 0)) return "the energy is not finite: " + hinge->why;
   const auto speeds = std::span(state.y).subspan(layout.positions, layout.speeds);
   const auto fastest =
       std::max_element(speeds.begin(), speeds.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -56,6 +60,10 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       work_(0),
       floats_(attention == Attention::whole && may_float(model)),
       initial_work_(initial.y.back()),
+      loops_(dynamic_cast<const ClosedLoops*>(&equations)),
+      length_of_loops_(loops_ != nullptr ? length_of_loops(model) : 0),
+      multipliers_(loops_ != nullptr ? loops_->closing_equations() : 0),
+      loops_work_(loops_ != nullptr ? equations.make_work() : Work(0)),
       checked_(initial.time) {
   if (attention == Attention::whole) effort_watch_.emplace(model, equations, span, summary);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
@@ -115,6 +123,7 @@ void Monitor::forget_untrusted_peaks() {
 
 void Monitor::observe(const Stepper& stepper) {
   look(stepper.state());
+  steps_ = stepper.statistics().accepted;
   if (effort_watch_) effort_watch_->observe(stepper);
 }
 
@@ -227,6 +236,20 @@ void Monitor::finish_momenta() {
   m.angular = m.angular_scale > 0 ? angular_error_ / m.angular_scale : 0;
 }
 
+/// In loops that rest under load each step leaves gaps of rounding, over which the loads work against forces of λ whose
+/// work nothing takes up: that is no motion that could be off by anything. Looked for where it may matter alone.
+void Monitor::find_rounding_energy(const State& state) {
+  constexpr double visible = 1e-3, far = 1e6;
+  constexpr double gap = 1e-15;  // of ℓ, to which loops are closed
+  if (loops_ == nullptr || !(energy_error_ > visible * energy_scale_)) return;
+  if (rounding_energy_ > 0 && energy_scale_ > far * rounding_energy_) return;
+  loops_->multipliers(state.time, state.y, multipliers_, loops_work_);
+  double forces = 0;
+  for (const double lambda : multipliers_) forces += std::abs(lambda);
+  if (!std::isfinite(forces)) return;
+  rounding_energy_ = std::max(rounding_energy_, static_cast<double>(steps_) * gap * length_of_loops_ * forces);
+}
+
 void Monitor::audit_energy(const State& state) {
   if (own_ == nullptr) seen_y_.clear();
   see(state);
@@ -236,20 +259,22 @@ void Monitor::audit_energy(const State& state) {
   const double energy = kinetic_energy + potential(state, e);
   const double work = state.y.back() - initial_work_;
   const double error = std::abs(energy - initial_energy_ - work);
-  if (!std::isfinite(error) && excess_.empty()) excess_ = without_energy(model_.layout(), state);
+  if (!std::isfinite(error) && excess_.empty()) excess_ = without_energy(model_, state);
   energy_error_ = std::max(energy_error_, error);
   energy_scale_ =
       std::max({energy_scale_, std::abs(energy), std::abs(initial_energy_), std::abs(work), kinetic_energy});
   const double untruncated = e.kinetic + e.potential - initial_energies_.kinetic - initial_energies_.potential - work;
   untruncated_error_ = std::max(untruncated_error_, std::abs(untruncated));
-  const auto relative = [&](double x) { return energy_scale_ > 0 ? x / energy_scale_ : 0; };
+  find_rounding_energy(state);
+  const bool moves = energy_scale_ > rounding_energy_;
+  const auto relative = [&](double x) { return moves ? x / energy_scale_ : 0; };
   summary_.energy_drift = relative(energy_error_);
-  summary_.energy_scale = energy_scale_;
+  summary_.energy_scale = moves ? energy_scale_ : 0;
   summary_.untruncated_drift = relative(untruncated_error_);
   for (std::size_t i = 0; i < model_.layout().speeds; ++i)
     greatest_speed_ = std::max(greatest_speed_, std::abs(state.y[model_.layout().positions + i]));
   // The greatest error so far: one that has grown with the energy passes through zero now and then.
-  if (!sign_change_ && energy_error_ <= trust_limit_ * energy_scale_) trust_state(state);
+  if (!sign_change_ && (moves ? energy_error_ : 0) <= trust_limit_ * energy_scale_) trust_state(state);
 }
 
 int Monitor::mass_matrix_sign(const State& state) {
@@ -288,6 +313,7 @@ void Monitor::remember(Memory& memory) {
   memory(initial_energies_.potential);
   memory(energy_error_);
   memory(energy_scale_);
+  memory(rounding_energy_);
   memory(summary_.untruncated_drift);
   memory(linear_error_);
   memory(angular_error_);

@@ -35,14 +35,24 @@ void MotionGap::remember(Memory& memory) {
     for (double* number : {&d.least, &d.most, &d.gap, &d.time}) memory(*number);
 }
 
+const MotionGap::Driven* MotionGap::lost() const {
+  const auto found = std::find_if(driven_.begin(), driven_.end(), [](const Driven& d) { return std::isinf(d.gap); });
+  return found == driven_.end() ? nullptr : &*found;
+}
+
+void MotionGap::tell(RunSummary& summary) const {
+  const Driven* driven = lost();
+  if (driven != nullptr) summary.lost_motion = {driven->motion->name, driven->time};
+}
+
 std::string MotionGap::text() const {
   constexpr double kept = 0.01;
+  if (const Driven* d = lost())
+    return "Motion '" + d->motion->name + "' has no finite coordinate at t = " + brief(d->time) + " s: where hinge '" +
+           hinge_of(*d).name + "' is from then on has no meaning.";
   const Driven* worst = nullptr;
   double greatest = kept;
   for (const Driven& d : driven_) {
-    if (std::isinf(d.gap))
-      return "Motion '" + d.motion->name + "' has no finite coordinate at t = " + brief(d.time) + " s: where hinge '" +
-             hinge_of(d).name + "' is from then on has no meaning.";
     const double range = d.most - d.least;
     // What stands still has no range, and rounding is no distance.
     const double share = d.gap > 1e-9 * (std::abs(d.least) + std::abs(d.most)) ? d.gap / range : 0;

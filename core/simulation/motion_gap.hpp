@@ -7,6 +7,7 @@
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/simulate.hpp"
 
 namespace withy {
 
@@ -21,6 +22,8 @@ class MotionGap {
   /// A sentence on a law that had no finite coordinate, or else on the hinge that is farthest from its law, against the
   /// range that the law has gone over where it was looked at; empty where each has kept to it within a hundredth.
   [[nodiscard]] std::string text() const;
+  /// Tells the summary of a law that had no finite coordinate.
+  void tell(RunSummary& summary) const;
 
  private:
   struct Driven {
@@ -29,6 +32,8 @@ class MotionGap {
     double least, most;    ///< of the law [rad, m]
     double gap, time;      ///< the greatest, and when [s]; infinite where the law was no number
   };
+  /// The first whose law had no finite coordinate; null: none.
+  [[nodiscard]] const Driven* lost() const;
   [[nodiscard]] const HingeNode& hinge_of(const Driven& driven) const {
     return model_.hinges()[static_cast<std::size_t>(driven.motion->hinge)];
   }

@@ -128,8 +128,7 @@ SessionEnd Session::go(double t) {
       if (halts_) return {RunStatus::completed, {}, state().time == t};
       continue;
     }
-    if (end.cause != SteppingEnd::Cause::stopped)
-      stop_ = stop_of(end, model_, equations_, state(), stepper().statistics());
+    if (end.cause != SteppingEnd::Cause::stopped) stop_ = stop_of(end, model_, equations_, state(), stepper());
     return bad_end(stop_);
   }
 }

@@ -66,7 +66,7 @@ class Run final : public SteppingObserver {
     const bool ended = end.cause == SteppingEnd::Cause::reached || end.cause == SteppingEnd::Cause::event;
     if (const std::string number = ended ? nonfinite_number(model_.layout(), loop_.state()) : ""; !number.empty())
       return {RunStatus::diverged, "the state is not finite: " + number, false};
-    return stop_of(end, model_, equations_, loop_.state(), loop_.stepper().statistics());
+    return stop_of(end, model_, equations_, loop_.state(), loop_.stepper());
   }
 
   /// The last state is an output, however the run ended.
@@ -298,10 +298,28 @@ MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const 
   }
   // Where a run has diverged nothing vibrates as it did on the way there.
   const State& trusted = run.monitor().trusted();
-  const bool diverged = stop.status == RunStatus::diverged;
-  summary.fastest_mode = fastest_mode(model, diverged ? equations.system(trusted.time, trusted.y) : history.last,
-                                      closing_rows(equations, diverged ? trusted.y : summary.final.y));
+  const bool unsolved = stop.status == RunStatus::singular && tried_as_given(run.stepper()),
+             gone = unsolved || stop.status == RunStatus::diverged;
+  summary.fastest_mode = fastest_mode(model, gone ? equations.system(trusted.time, trusted.y) : history.last,
+                                      closing_rows(equations, gone ? trusted.y : summary.final.y));
+  // Next to a zero of det M vibrations are fast whatever the steps: those that are too long were so at the start.
+  if (unsolved)
+    summary.fastest_mode =
+        std::min(summary.fastest_mode, fastest_mode(model, history.first, closing_rows(equations, initial.y)));
   return history;
+}
+
+/// Where steps that are given threw the state off, M cannot be solved there for no fault of its own; and of a state
+/// that is nowhere near the model's it tells nothing.
+void blame_steps(const Run& run, bool too_long, const MassMatrixHistory& history, double deflection_limit,
+                 const RunSummary& summary, Stop& stop) {
+  constexpr double nowhere_near = 1e3;  // of the deflections that a run goes on with
+  const bool thrown = too_long && stop.status == RunStatus::singular && tried_as_given(run.stepper());
+  if (thrown) stop.status = RunStatus::diverged;
+  const auto beyond = [&](const auto& ratio) { return ratio.second > nowhere_near * deflection_limit; };
+  const bool absurd = summary.past_deflection &&
+                      std::any_of(summary.peak_deflection_ratio.begin(), summary.peak_deflection_ratio.end(), beyond);
+  if ((thrown || absurd) && history.lost_definiteness()) stop.physical = false;
 }
 
 std::string message_of_completed(const Run& run, const Model& model, const RunSummary& summary) {
@@ -354,6 +372,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     const std::string imbalanced = run.monitor().greatest_speed() > options.least_speed
                                        ? imbalance(summary, options, integrator, mean_step)
                                        : std::string();
+    run.motion_gap().tell(summary);
     for (const std::string& fault : {imbalanced, run.motion_gap().text()}) {
       if (fault.empty()) continue;
       stop.status = RunStatus::inaccurate;
@@ -361,10 +380,11 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     }
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
+    const std::string too_long = steps_too_long(summary, integrator, mean_step);
+    blame_steps(run, !too_long.empty(), history, options.deflection_limit, summary, stop);
     summary.message = explain(stop, summary.final.time, examined ? &history : nullptr, model.layout());
     if (stop.status == RunStatus::diverged)
-      summary.message = steps_too_long(summary, integrator, mean_step) + summary.message +
-                        note_on_impulses(model, run.stepper().state());
+      summary.message = too_long + summary.message + note_on_impulses(model, run.stepper().state());
   }
   if (stop.status != RunStatus::completed && stop.status != RunStatus::interrupted) go_back(run.monitor(), summary);
   summary.status = stop.status;

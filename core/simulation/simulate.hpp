@@ -131,6 +131,12 @@ struct RunSummary {
   std::size_t switchings = 0;     ///< of loads, at zeros of their switching functions
   /// Times [s] at which steps were rejected as they are where a load jumps without having declared it.
   std::vector<double> suspected_jumps;
+  /// A motion without a finite coordinate at an accepted state or an output, which integrators do not see, for they ask
+  /// for accelerations alone.
+  struct LostMotion {
+    std::string name;  ///< empty: there is none
+    double time = 0;   ///< the first such [s]
+  } lost_motion;
   Conditioning conditioning;  ///< at the final state; empty where there are more than 200 generalized speeds
   /// Greatest √ of the eigenvalues of M⁻¹K there, of the motions that keep loops closed [rad/s]; 0 where they were not
   /// looked at.

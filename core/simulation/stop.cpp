@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/given_steps.hpp"
 
 namespace withy {
 namespace {
@@ -29,7 +30,7 @@ std::optional<NonfiniteMotion> nonfinite_motion(const Model& model, double time,
 }
 
 Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
-             const StepStatistics& steps) {
+             const Stepper& stepper) {
   if (end.cause == SteppingEnd::Cause::crowded)
     return {RunStatus::step_underflow, "switches or events follow each other without time between them"};
   if (end.cause == SteppingEnd::Cause::unknown_inside)
@@ -38,16 +39,19 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
   if (end.cause != SteppingEnd::Cause::failed) return {};
   if (!end.reason.empty()) return {RunStatus::load_failed, end.reason, false};
   const StepResult& result = end.step;
+  const double ahead = stepper.statistics().largest_step;
   if (result.outcome == StepResult::Outcome::nonfinite || result.outcome == StepResult::Outcome::step_underflow)
-    if (const auto motion = nonfinite_motion(model, state.time, steps.largest_step))
+    if (const auto motion = nonfinite_motion(model, state.time, ahead))
       return {RunStatus::diverged, text_of(*motion), false};
   const bool known = result.body >= 0 && static_cast<std::size_t>(result.body) < model.bodies().size();
   const std::string body = known ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
+  const std::string where =
+      body + (tried_as_given(stepper) ? ", in steps as long as given" : ", however small the step");
   switch (result.outcome) {
     case StepResult::Outcome::nonfinite: {
-      const std::string culprit = describe_nonfinite(model, equations, state, steps.largest_step);
-      return {RunStatus::diverged, "the derivatives are not finite, however small the step" + body +
-                                       (culprit.empty() ? culprit : ": " + culprit)};
+      const std::string culprit = describe_nonfinite(model, equations, state, ahead);
+      return {RunStatus::diverged,
+              "the derivatives are not finite" + where + (culprit.empty() ? culprit : ": " + culprit)};
     }
     case StepResult::Outcome::singular:
       if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr && result.body < 0)
@@ -55,7 +59,7 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
                 "the loops cannot be closed at the end of a step, however small: they reach a configuration from which "
                 "they do not move on, or motions that leave them no way",
                 false};
-      return {RunStatus::singular, "the mass matrix cannot be solved, however small the step" + body};
+      return {RunStatus::singular, "the mass matrix cannot be solved" + where};
     case StepResult::Outcome::step_underflow:
       return {
           RunStatus::step_underflow,
@@ -65,6 +69,10 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
       break;
   }
   return {};
+}
+
+bool tried_as_given(const Stepper& stepper) {
+  return dynamic_cast<const GivenSteps*>(&stepper) != nullptr && stepper.statistics().rejected <= 1;
 }
 
 std::string steps_too_long(const RunSummary& summary, const Integrator& integrator, double mean_step) {

@@ -30,7 +30,10 @@ std::optional<NonfiniteMotion> nonfinite_motion(const Model& model, double time,
 /// The reason that stepping itself gives: no step can be made, or switches follow each other without time between.
 /// Completed where it gives none.
 Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
-             const StepStatistics& steps);
+             const Stepper& stepper);
+
+/// Whether no step shorter than those given was tried: the integrator chooses none, and halves none that fails.
+bool tried_as_given(const Stepper& stepper);
 
 /// Says that steps are beyond what the integrator is stable to, and ends with a blank; empty where they are not.
 /// \param mean_step [s] of the accepted steps

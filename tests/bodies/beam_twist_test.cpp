@@ -98,6 +98,40 @@ TEST(BeamTwist, of_many_turns_has_the_mean_stiffness_of_both_planes) {
   EXPECT_LT((K - mean * Eigen::Matrix2d::Identity()).norm(), 1e-12 * mean);
 }
 
+/// Turned by `angle` from x = 0.6 m on, within `gap`.
+Value jump(double angle, double gap) {
+  const auto row = [](double x, double beta) { return Value::list({Value(x), Value(beta)}); };
+  return Value::list({row(0, 0), row(0.6, 0), row(0.6 + gap, angle), row(twisted_length, angle)});
+}
+
+/// Functions of one curvature have c² ∫ B dx: 0.6 m of the one angle, the rest of the other. What turns within a
+/// nanometre takes as many points as what turns within a millimetre, and every cut too.
+TEST(BeamTwist, a_jump_costs_what_it_turns_by_however_short_it_is) {
+  const double angle = 0.5, gap = 1e-9;
+  const auto straight = twisted_beam({}, 1), twisted = twisted_beam(jump(angle, gap), 1, 0.02);
+  const double square = straight->shape().stiffness(0, 0) / (EI_z * twisted_length);
+  const Eigen::Matrix2d exact = square * (0.6 * bending(0) + (twisted_length - 0.6) * bending(angle));
+  EXPECT_LT((twisted->shape().stiffness - exact).norm(), 1e-8 * exact.norm());
+  const auto wide = twisted_beam(jump(angle, 1e-3), 1, 0.02);
+  EXPECT_EQ(twisted->shape().particles.size(), wide->shape().particles.size());
+  EXPECT_EQ(twisted->shape().sections.size(), wide->shape().sections.size());
+  EXPECT_EQ(twisted->cut(0.3)->particles.size(), wide->cut(0.3)->particles.size());
+  expect_body_conforms(*twisted);
+}
+
+/// Turned to β₁ at 0.6 m and back at the tip, without modes: ∫ cos 2β dx = L sin 2β₁/2β₁, so that its rotary inertia is
+/// (2r ± r sin 2β₁/2β₁) L about y and z, with 3r and r of the sections.
+TEST(BeamTwist, turns_the_inertia_of_a_rigid_beam_between_all_rows) {
+  const double r = 0.02, turn = 2;
+  const auto row = [](double x, double beta) { return Value::list({Value(x), Value(beta)}); };
+  const auto body = twisted_beam(Value::list({row(0, 0), row(0.6, turn), row(twisted_length, 0)}), 0, r);
+  Matrix3 sum = Matrix3::Zero();
+  for (const Section& s : body->shape().sections) sum += s.inertia;
+  const double central = density * std::pow(twisted_length, 3) / 12, swing = std::sin(2 * turn) / (2 * turn);
+  EXPECT_NEAR(sum(1, 1), central + r * twisted_length * (2 + swing), 1e-13);
+  EXPECT_NEAR(sum(2, 2), central + r * twisted_length * (2 - swing), 1e-13);
+}
+
 /// (B d″)″ = μ ω² d with d = (v, w), as four first-order equations of pairs (d, d′, m = B d″, m′) from the root, where
 /// d and d′ vanish: the determinant of what m and m′ are at the tip, which is free, by Runge and Kutta's rule.
 double free_end(double omega, double end) {

@@ -116,6 +116,17 @@ TEST(Sid, nodes_are_stations) {
   EXPECT_NEAR(of_file->shape().damping(1, 1), 0.04 * std::sqrt(2.58144317827e2), 1e-10);
 }
 
+/// `root` is a station of every modal body: held there, it is held as where no root is named.
+TEST(Sid, the_root_may_be_named_as_the_station_is) {
+  SidReport report;
+  const BodyDamping damping{.ratio = 0.02, .ratios = {}};
+  const auto named = body_of(car_roof(), {"root", damping}, report), plain = body_of(car_roof(), {{}, damping}, report);
+  EXPECT_EQ(named->station(std::string("root"))->X, Vector3::Zero());
+  EXPECT_TRUE(named->station(std::string("root"))->phi.isZero(0));
+  EXPECT_EQ(named->shape().length, plain->shape().length);
+  EXPECT_EQ(named->shape().damping, plain->shape().damping);
+}
+
 TEST(Sid, the_station_measured_is_the_node_that_gives_most_under_a_force) {
   SidReport report;
   const auto roof = body_of(car_roof(), {}, report);

@@ -164,6 +164,23 @@ TEST_F(Plate, particles_have_the_integrals_of_second_order_fields) {
   }
 }
 
+/// Blanks are no matter, and the edge in other units, as 3 ft of 6 ft, is the edge though its last bits differ.
+TEST_F(Plate, places_are_taken_however_they_are_spaced_and_to_their_edges) {
+  const double foot = 0.3048;
+  const auto body = plate(36 * 0.0254, 6 * foot, 0.3, 2);
+  const auto at = [&](const char* name) {
+    const auto place = body->station(std::string(name));
+    return place ? place->X : Vector3::Constant(std::nan(""));
+  };
+  for (const char* name : {"(0.5,0.3)", "(0.5, 0.3)", "(0.5 , 0.3)", "( 0.5,0.3 )", "( 0.5 , +0.3 )", "(0.5 ; 0.3)"})
+    EXPECT_EQ(at(name), Vector3(0.5, 0.3, 0)) << name;
+  EXPECT_LT((at("(0.9144, 0.9144)") - Vector3(0.9144, 3 * foot, 0)).norm(), 1e-15);
+  EXPECT_LT((at("(0.9144, -0.9144)") - Vector3(0.9144, -3 * foot, 0)).norm(), 1e-15);
+  EXPECT_TRUE(body->station(3 * foot));
+  for (const char* name : {"(0.9145, 0)", "(0, 0.9145)", "(0.5 0.3)", "(, 0.3)", "(0.5, )", "(+-0.5, 0)", "(0.5, 0.3"})
+    EXPECT_FALSE(body->station(std::string(name))) << name;
+}
+
 TEST_F(Plate, more_modes_than_functions_are_refused) {
   Diagnostics diagnostics;
   EXPECT_EQ(make_plugin<Body>(registry_, "plate",

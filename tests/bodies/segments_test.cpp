@@ -286,6 +286,40 @@ TEST_F(Segments, slight_twist_changes_the_damping_slightly) {
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(twisted[k].ratio, straight[k].ratio, 1e-5) << "mode " << k + 1;
 }
 
+/// Nor does a twist that turns next to nothing where shear shares in every mode: the first of either plane has the
+/// ratio that is asked.
+TEST_F(Segments, first_modes_of_both_planes_with_shear_have_the_damping_asked_however_little_couples_them) {
+  const std::string shear =
+      "bending_y: {stiffness: 1, modes: 3, family: orthogonal-polynomials, rotary_inertia: 1e-3}, shear_y: {stiffness: "
+      "30, modes: 3, family: orthogonal-polynomials}, bending_z: {stiffness: 1.6, modes: 3, family: "
+      "orthogonal-polynomials, rotary_inertia: 1.5e-3}, shear_z: {stiffness: 50, modes: 3, family: "
+      "orthogonal-polynomials}";
+  const std::vector<DampedMode> straight = modes_of(compiled(damped_cantilever(4, shear)));
+  for (const char* angle : {"0", "1e-9", "1e-4", "0.02"}) {
+    const std::vector<DampedMode> twisted =
+        modes_of(compiled(damped_cantilever(4, shear + ", twist: [[0, 0], [1, " + angle + "]]")));
+    for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(twisted[k].ratio, 0.02, 2e-4) << angle << ", mode " << k + 1;
+    for (std::size_t k = 0; k < 6; ++k)
+      EXPECT_NEAR(twisted[k].ratio, straight[k].ratio, 0.01 * straight[k].ratio) << angle << ", mode " << k + 1;
+  }
+}
+
+/// In another strain kinematics the segments have their masses, stiffness and damping still: frequencies and ratios at
+/// rest are those of the complete second order.
+TEST_F(Segments, vibrate_in_any_strain_kinematics) {
+  const std::string space = planes(2) +
+                            ", torsion: {stiffness: 0.5, inertia: 0.01, modes: 2, family: "
+                            "orthogonal-polynomials}";
+  const std::vector<DampedMode> complete = modes_of(compiled(damped_cantilever(2, space)));
+  const std::vector<DampedMode> other =
+      modes_of(compiled(damped_cantilever(2, space) + "formulation: {kinematics: foreshortening, truncation: none}\n"));
+  ASSERT_EQ(other.size(), complete.size());
+  for (std::size_t k = 0; k < other.size(); ++k) {
+    EXPECT_NEAR(other[k].omega, complete[k].omega, 1e-6 * complete[k].omega) << "mode " << k + 1;
+    EXPECT_NEAR(other[k].ratio, complete[k].ratio, 1e-6) << "mode " << k + 1;
+  }
+}
+
 /// The driven arm with 4 segments of two polynomials a link, `quadratic`: the end of the arm at 10 s against the
 /// `exact` rod with six polynomials, (0.72299320, −1.70744217) m at rtol 1e-9 (docs/bodies.md). Demanded: 0.1 mm.
 TEST_F(Segments, agree_with_the_exact_rod_on_the_driven_arm) {

@@ -202,6 +202,10 @@ TEST(Failures, APluginThatIsRefusedIsTheEnvironmentsAndIsListed) {
   const Finished list = withy(folder, {"plugins", "--plugins", "plugins"});
   EXPECT_EQ(list.status, 0);
   EXPECT_THAT(list.out, HasSubstr("refused:\nformulation/broken: "));
+  const Finished schema = withy(folder, {"schema", "--plugins", "plugins"});
+  EXPECT_EQ(schema.status, 0);
+  EXPECT_EQ(schema.out, withy(folder, {"schema"}).out) << "that of the others";
+  EXPECT_THAT(schema.err, AllOf(HasSubstr("left out: "), HasSubstr("broken.so")));
 }
 
 TEST(Failures, AnUnknownPluginIsBadInputAndTheNearestIsNamed) {

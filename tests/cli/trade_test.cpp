@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "withy/tests/cli/process.hpp"
@@ -115,6 +116,35 @@ TEST(Trade, ErrorsAreThoseThatCompareMeasures) {
   const std::vector<double> exact = with_two_modes("exact"), linear = with_two_modes("linear");
   ASSERT_FALSE(exact.empty());
   for (const double error : linear) EXPECT_NEAR(error, real, exact.front() + 1e-6);
+}
+
+/// An error of zero would be believed.
+TEST(Trade, WhatIsNotMeasuredIsNoErrorOfZero) {
+  const auto expect = [](const char* output, const std::string& measured, const std::string& other, const char* words,
+                         const char* cells) {
+    const Folder folder;
+    const json j = json::parse(trade(folder, {"--output", output, "--json"}).out);
+    const json& reference = j.at("references").at("");
+    EXPECT_TRUE(reference.at(measured + "_error").is_number());
+    EXPECT_TRUE(reference.at(other + "_error").is_null());
+    EXPECT_TRUE(reference.at(other + "_way").is_null());
+    std::size_t completed = 0, empty = 0;
+    for (const json& p : j.at("points")) {
+      const bool done = p.at("status") == "completed";
+      completed += done ? 1 : 0;
+      EXPECT_EQ(p.at(measured + "_error").is_number(), done);
+      EXPECT_EQ(p.at("relative_error").is_number(), done);
+      EXPECT_TRUE(p.at(other + "_error").is_null());
+    }
+    std::istringstream rows(folder.read("out/trade.csv"));
+    for (std::string row; std::getline(rows, row);)
+      if (std::regex_search(row, std::regex(cells))) ++empty;
+    EXPECT_GT(completed, 0U);
+    EXPECT_EQ(empty, completed) << "cells of what is not measured";
+    EXPECT_THAT(trade(folder, {"--output", output}).out, testing::Not(HasSubstr(words)));
+  };
+  expect("shoulder", "hinge", "tip", ", tips ", ",completed,[-+.e0-9]+,,[-+.e0-9]+,");
+  expect("payload.tip", "tip", "hinge", "changed: hinges ", ",completed,,[-+.e0-9]+,[-+.e0-9]+,");
 }
 
 TEST(Trade, NamesTheCheapestWithinTheErrorsAskedFor) {

@@ -91,6 +91,33 @@ TEST(ElastoDyn, ATowerHasDampingOfItsOwnInEachDirection) {
   EXPECT_NEAR(std::max(ratios[0], ratios[1]), 0.04, 1e-9);
 }
 
+/// A comma ends a number: of 0,7 % the rest would be a parameter called 7, and the blade undamped.
+TEST(ElastoDyn, DecimalCommasAreRefusedWhereTheyStand) {
+  const std::string file = text_of_file(model_file("blade.dat"));
+  const auto problems_of_blade = [](const std::string& text) {
+    const Scratch blade("comma.dat", text);
+    return problems_of({blade.file(), {}, false, 61.5, 0});
+  };
+  EXPECT_EQ(problems_of_blade(file), "");
+  const std::string with_comma = replaced(file, "0.477465   BldEdDmp(1)", "0,477465   BldEdDmp(1)");
+  const std::string before = with_comma.substr(0, with_comma.find("0,47"));
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  EXPECT_THAT(problems_of_blade(with_comma),
+              HasSubstr("comma.dat:" + std::to_string(line) + ":1: /: got \"0,477465\"; need a finite number"));
+  EXPECT_THAT(problems_of_blade(replaced(file, "0.477465   BldEdDmp(1)", "0.4.7   BldEdDmp(1)")),
+              HasSubstr("got \"0.4.7\"; need a finite number"));
+  // Numbers of a table that commas part are numbers; one too many is of a decimal comma.
+  const std::size_t heading = file.find("BlFract"), units = file.find('\n', heading) + 1,
+                    row = file.find('\n', units) + 1;
+  std::string parted = file;
+  for (std::size_t i = row; parted[i] != '\n'; ++i)
+    if (parted[i] == ' ' && i > row && parted[i - 1] != ' ' && parted[i - 1] != '\n') parted[i] = ',';
+  EXPECT_EQ(problems_of_blade(parted), "");
+  std::string decimal = file;
+  decimal[decimal.find('.', decimal.find('\n', row))] = ',';
+  EXPECT_THAT(problems_of_blade(decimal), HasSubstr("need 6, one for each column; decimals follow a point"));
+}
+
 /// Columns that FAST 7 gave to ADAMS, and where air acts; one that is zero all along leaves nothing out.
 TEST(ElastoDyn, ColumnsThatNoBeamHasAreListed) {
   const std::string file = R"(------- FAST 7 -------

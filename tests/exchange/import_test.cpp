@@ -11,18 +11,6 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What is wrong with it; empty where nothing is.
-std::string problems_of(const ModelImport& what) {
-  try {
-    imported(what);
-  } catch (const SceneError& e) {
-    return e.what();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return {};
-}
-
 TEST(Import, ErrorsHaveTheirPlacesAndAllComeAtOnce) {
   const Scratch file(".urdf", "");
   const auto urdf = [&](const std::string& inside) {

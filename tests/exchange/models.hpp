@@ -8,11 +8,13 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "withy/exchange/import.hpp"
 #include "withy/host/equations.hpp"
+#include "withy/scene/scene_error.hpp"
 
 namespace withy::exchange {
 
@@ -47,6 +49,18 @@ class Scratch {
 };
 
 inline ImportedScene imported(const ModelImport& what) { return import_model(what, plugins().registry()); }
+
+/// What is wrong with it; empty where nothing is.
+inline std::string problems_of(const ModelImport& what) {
+  try {
+    imported(what);
+  } catch (const SceneError& e) {
+    return e.what();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return {};
+}
 
 inline host::Scene scene_of(const ModelImport& what) { return host::Scene::parse(plugins(), imported(what).text); }
 

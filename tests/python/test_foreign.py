@@ -286,6 +286,30 @@ def test_a_body_is_what_its_shape_says():
         scene.check()
 
 
+MASS = {"mass": 1, "position": [1, 0, 0]}
+
+
+@pytest.mark.parametrize("shape, problem", [
+    ({"particles": [{**MASS, "ph": [[0]]}]}, "particles[0].ph: unknown key \"ph\"; did you mean 'phi'?"),
+    ({"particles": [MASS], "sitffness": [[28]]}, "sitffness: unknown key \"sitffness\"; did you mean 'stiffness'?"),
+    ({"particles": [MASS], "sections": [{"mass": 1}]}, "sections[0].mass: unknown key \"mass\""),
+    ({"particles": [MASS], "stations": {"tip": {"at": 1}}}, "stations.tip.at: unknown key \"at\""),
+    ({"particles": [MASS, {"mass": "x"}]}, "particles[1].mass: need a number, not str"),
+    ({"particles": [{"position": [1, 0, 0]}]}, "particles[0].mass: missing"),
+    ({"particles": [MASS], "modes": "bending"}, "modes: need a list of names, not str"),
+    ({"particles": [MASS], "modes": ["a"], "stiffness": "stiff"}, "stiffness: could not convert string to float"),
+    ({"particles": [MASS], "modes": ["a"], "damping": None}, "damping: need numbers, not NoneType"),
+    ({"particles": 1}, "particles: need a list of dicts, not int"),
+    (None, "shape(): need a dict, not NoneType"),
+])
+def test_what_a_shape_cannot_say_is_told_with_its_place(shape, problem):
+    scene = withy.Scene(time={"end": 1})
+    scene.bodies["rod"] = withy.python_body(type("Body", (), {"shape": lambda self: shape})())
+    scene.hinges["root"] = withy.weld(parent="world", child="rod")
+    with pytest.raises(withy.SceneError, match=re.escape(f"/bodies/rod/object: Python: {problem}")):
+        scene.check()
+
+
 def test_the_page_s_example_runs(monkeypatch, capsys):
     sources = pathlib.Path(__file__).parents[2]
     text = (sources / "docs" / "python.md").read_text().partition("## Loads and bodies in Python")[2]

@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import threading
+import warnings
 
 import numpy
 import pytest
@@ -127,6 +128,26 @@ def test_a_scene_keeps_the_files_of_its_folder_wherever_the_process_goes(tmp_pat
         changed.check()
     with pytest.raises(withy.SceneError, match="shape.obj"):
         withy.loads((tmp_path / "own" / "scene.yaml").read_text(), "scene.yaml")
+
+
+def test_plugins_come_of_the_folders_that_were_named_wherever_the_process_goes(tmp_path, monkeypatch):
+    (tmp_path / "mine").mkdir()
+    monkeypatch.chdir(tmp_path)
+    scene = withy.loads(TURNTABLE, plugins=["mine"])
+    built = withy.Scene(plugins=["mine"], time={"end": 1}, bodies=dict(scene.bodies), hinges=dict(scene.hinges))
+    parts, pickled = withy.Parts(plugins=["mine"]), pickle.dumps(scene)
+    (tmp_path / "empty").mkdir()
+    monkeypatch.chdir(tmp_path / "empty")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # a folder that cannot be read is one
+        pickle.loads(pickled).check()
+        scene.copy().set("time.end", 1).unset("time.end").check()
+        for changed in (scene.copy(), built):
+            changed.bodies["table"] = {**changed.bodies["table"], "mass": 2}
+            changed.check()
+        assert parts.hinges.weld(parent="world", child="table")["type"] == "weld"
+    with pytest.warns(RuntimeWarning, match="mine cannot be read"):
+        withy.loads(TURNTABLE, plugins=["mine"])
 
 
 def test_a_check_is_that_of_the_program(slew):

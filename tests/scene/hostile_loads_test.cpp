@@ -1,9 +1,14 @@
 // Loads that are wrong about themselves while a scene is built are reported at the place that names them.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "scene_fixture.hpp"
 #include "withy/core/model/model.hpp"
@@ -14,10 +19,34 @@ namespace {
 
 constexpr std::size_t never_set = std::size_t{1} << 60U;
 
+/// Two states that stay, of these names.
+class Named final : public ContinuousPart {
+ public:
+  Named(std::string first, std::string second) : names_{std::move(first), std::move(second)} {}
+  std::size_t states() const override { return names_.size(); }
+  std::string name(std::size_t state) const override { return names_[state]; }
+  void begin(const LoadView&, std::span<double> z) const noexcept override { std::fill(z.begin(), z.end(), 0.0); }
+  void rates(const LoadView&, std::span<double> rates) const noexcept override {
+    std::fill(rates.begin(), rates.end(), 0.0);
+  }
+  void add(const LoadView&, std::span<double>) const noexcept override {}
+
+ private:
+  std::array<std::string, 2> names_;
+};
+
+std::unique_ptr<ContinuousPart> named_after(const std::string& fault) {
+  if (fault == "named") return std::make_unique<Named>("größe", "z.rate");
+  if (fault == "twins") return std::make_unique<Named>("z", "z");
+  if (fault == "nameless") return std::make_unique<Named>("z", "");
+  if (fault == "newline") return std::make_unique<Named>("a\nb", "z");
+  return nullptr;
+}
+
 /// Does nothing, and says one thing wrongly of it.
 class BoundBoaster final : public BoundLoad, private DiscretePart {
  public:
-  explicit BoundBoaster(std::string fault) : fault_(std::move(fault)) {}
+  explicit BoundBoaster(std::string fault) : fault_(std::move(fault)), continuous_(named_after(fault_)) {}
   std::size_t scratch() const override { return fault_ == "scratch" ? never_set : 0; }
   void add(double, std::span<const double>, std::span<const double>, std::span<double>,
            std::span<double>) const noexcept override {}
@@ -29,6 +58,7 @@ class BoundBoaster final : public BoundLoad, private DiscretePart {
     if (fault_ == "late") state.time = 7;
   }
   const DiscretePart* discrete() const override { return this; }
+  const ContinuousPart* continuous() const override { return continuous_.get(); }
 
  private:
   std::size_t states() const override { return fault_ == "states" ? never_set : 1; }
@@ -44,6 +74,7 @@ class BoundBoaster final : public BoundLoad, private DiscretePart {
   void add(double, std::span<const double>, std::span<double>) const noexcept override {}
 
   std::string fault_;
+  std::unique_ptr<ContinuousPart> continuous_;
 };
 
 class Boaster final : public Load {
@@ -93,6 +124,16 @@ TEST_F(HostileLoads, ThatSayToHaveMoreNumbersThanAnyMemoryAreReported) {
   EXPECT_EQ(load("scratch"), says + "numbers of scratch space" + most);
   EXPECT_EQ(load("states"), says + "discrete states" + most);
   EXPECT_EQ(load("switches"), says + "switching functions" + most);
+}
+
+// A state is kept by their names: run.json would have a key twice, or one that cannot be read.
+TEST_F(HostileLoads, WhoseStatesCannotBeReadBackByTheirNamesAreReported) {
+  const std::string has = who + "has continuous states that cannot be: ";
+  EXPECT_EQ(load("named"), "");
+  EXPECT_EQ(load("twins"), has + "two are named 'z'");
+  EXPECT_EQ(load("nameless"), has + "number 2 has no name");
+  EXPECT_EQ(load("newline"),
+            has + "number 1 has a name with a comma, a quotation mark, a slash or a control character");
 }
 
 // A free hinge has 7 coordinates and 6 rates; behind them are the load's state, whether it is that of a run, and the

@@ -136,6 +136,22 @@ TEST_F(SceneValuesTest, ModesAreFoundByTheRolesOfParameters) {
   EXPECT_EQ(count.family_id(), "clamped-free");
 }
 
+/// Studies vary the family of bending by its path, and tell the others too.
+TEST_F(SceneValuesTest, FamiliesOfAllStrainsAreFound) {
+  values.set("bodies.boom.torsion.stiffness", Value(50.0), "the test");
+  values.set("bodies.boom.torsion.inertia", Value(0.01), "the test");
+  values.set("bodies.boom.torsion.family", Value(std::string("craig-bampton")), "the test");
+  values.set("bodies.boom.extension.stiffness", Value(1e4), "the test");
+  const Scene scene = make_scene(values, registry);
+  const std::vector<ModeCount>& counts = scene.modes.at(0).counts;
+  ASSERT_EQ(counts.size(), 3u);
+  EXPECT_EQ(counts[0].family_path, "bending_y.family");
+  EXPECT_EQ(counts[1].strain, "torsion");
+  EXPECT_EQ(counts[1].family_id(), "craig-bampton");
+  EXPECT_EQ(counts[1].family_path, "");
+  EXPECT_EQ(counts[2].family_id(), "clamped-free") << "as nothing else is said";
+}
+
 TEST_F(SceneValuesTest, FormulationsStandInTheirRanks) {
   const std::vector<std::string> studied = studied_formulations(registry);
   const auto place = [&](const char* id) { return std::find(studied.begin(), studied.end(), id) - studied.begin(); };

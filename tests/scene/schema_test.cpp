@@ -157,6 +157,26 @@ TEST_F(Schema, HoldsEveryPluginWithItsParameters) {
   EXPECT_EQ(ids, std::set<std::string>(known.begin(), known.end()));
 }
 
+// As a host of plugins has it: what could be loaded is listed, until an attempt to load it fails.
+TEST_F(Schema, LeavesOutThePluginsOfALibraryThatIsRefusedAndSaysWhyOnce) {
+  const std::set<std::string> broken = {"hinge/parab", "load/lead", "load/drag", "strain-kinematics/sk"};
+  registry.set_loader(
+      [&](Registry&, std::string_view kind, std::string_view id) -> bool {
+        if (broken.contains(std::string(kind) + "/" + std::string(id))) throw PluginError("laws.so cannot be read");
+        return false;
+      },
+      [&](std::string_view kind) {
+        std::vector<std::string> ids;
+        for (const std::string& name : broken)
+          if (name.starts_with(std::string(kind) + "/")) ids.push_back(name.substr(kind.size() + 1));
+        return ids;
+      });
+  std::vector<std::string> told;
+  EXPECT_EQ(Json::parse(withy::schema(registry, [&](const std::string& why) { told.push_back(why); })), json);
+  EXPECT_EQ(told, std::vector<std::string>{"laws.so cannot be read"});
+  EXPECT_EQ(Json::parse(withy::schema(registry)), json);
+}
+
 TEST_F(Schema, AcceptsEverySceneOfTheProject) {
   for (const char* path : {"scenes/pendulum.yaml", "scenes/two-link-slew.yaml", "scenes/driven-arm.yaml",
                            "scenes/beam-on-base.yaml", "scenes/spacecraft.yaml", "scenes/manipulator-pid.yaml",

@@ -219,6 +219,105 @@ loads: {servo: {type: pid, hinge: axle, proportional: 100, derivative: 20, refer
   }
 }
 
+/// A floating arm of two booms, whose fastest mode, 354.6 rad/s at rest, rk4 follows in steps of 2.832/354.6 = 8 ms.
+RunSummary floating_arm(const std::string& step) {
+  return outcome_of(SceneValues::parse("format: withy/1\ntime: {end: 0.5}\nintegrator: {name: rk4, step: " + step + R"(}
+bodies:
+  base: {type: rigid, mass: 50, inertia: [4, 4, 5, 0, 0, 0], frames: {mount: {position: [0.3, 0, 0]}}}
+  upper: {type: beam, length: 1.2, mass_per_length: 1.5, bending_y: {stiffness: 90, modes: 2}, damping_ratio: 1 %}
+  hub: {type: rigid, mass: 1.2, inertia: [0.002, 0.002, 0.003, 0, 0, 0]}
+  fore: {type: beam, length: 0.9, mass_per_length: 1.1, bending_y: {stiffness: 40, modes: 2}, damping_ratio: 1 %}
+  hand: {type: rigid, mass: 0.8, inertia: [0.001, 0.001, 0.0015, 0, 0, 0]}
+hinges:
+  float: {type: planar, parent: world, child: base}
+  shoulder: {type: revolute, axis: [0, 0, 1], parent: base.mount, child: upper}
+  elbow: {type: revolute, axis: [0, 0, 1], parent: upper.tip, child: hub}
+  fore_root: {type: weld, parent: hub, child: fore}
+  grip: {type: weld, parent: fore.tip, child: hand}
+initial: {hinges: {elbow: {position: 60 deg}}}
+loads:
+  tau1: {type: hinge-effort, hinge: shoulder, law: sine, amplitude: 3, period: 2}
+  tau2: {type: hinge-effort, hinge: elbow, law: sine, amplitude: -1, period: 2}
+)",
+                                       "planted.yaml"));
+}
+
+/// However far the steps throw the arm, to where M cannot be solved or is lost to rounding, it is the steps.
+TEST(Causes, StepsThatAreTooLongAreNoFaultOfTheMassMatrix) {
+  for (const char* step : {"0.2", "0.1", "0.05", "0.02", "0.012", "0.01"}) {
+    const RunSummary s = floating_arm(step);
+    EXPECT_EQ(s.status, RunStatus::diverged) << step << ": " << s.message;
+    EXPECT_THAT(s.message, HasSubstr("s are too long for the integrator")) << step;
+    EXPECT_THAT(s.message, HasSubstr("What to do: take shorter steps")) << step;
+    EXPECT_THAT(s.message, Not(HasSubstr("however small"))) << step << ": none shorter was tried";
+    EXPECT_THAT(s.message, Not(HasSubstr("of this formulation"))) << step;
+  }
+  EXPECT_EQ(floating_arm("0.008").status, RunStatus::completed);
+}
+
+/// A formulation whose M does become singular is named in steps that are given, as in those that are chosen.
+TEST(Causes, AMassMatrixThatBecomesSingularIsNoFaultOfGivenSteps) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
+  values.set_text("integrator={name: rk4, step: 1e-3}", "the test").set_text("loads.slew.time_scale=1.2", "the test");
+  const RunSummary s = outcome_of(values.choose_formulation("consistent", "the test"));
+  EXPECT_EQ(s.status, RunStatus::singular);
+  EXPECT_THAT(s.message, Not(HasSubstr("too long")));
+  EXPECT_THAT(s.message, HasSubstr("det M changed sign"));
+}
+
+/// A boom whose hub is driven in a plane, with modes out of it, and `more`.
+CertifiedRun driven_in_a_plane(const std::string& tolerances, const std::string& out_of_plane,
+                               const std::string& more = "") {
+  const SceneValues values =
+      SceneValues::parse("format: withy/1\ntime: {end: 5}\nintegrator: {name: dopri5, " + tolerances + R"(}
+bodies:
+  hub: {type: rigid, mass: 5, inertia: [1, 1, 1, 0, 0, 0]}
+  boom: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 30, modes: 2})" +
+                             out_of_plane + R"(}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub, child: boom}
+loads: {motor: {type: hinge-effort, hinge: axle, law: sine, amplitude: 3, period: 1}}
+)" + more,
+                         "planted.yaml");
+  RunSettings settings;
+  settings.look_beyond = false;
+  settings.estimate = Estimate::never;
+  return run(prepare(values, plugins()), plugins(), settings);
+}
+
+/// Without them the steps are the same, however fast they are.
+TEST(Causes, ModesThatRestLimitNoSteps) {
+  const std::string fine = "rtol: 3e-6, atol: 3e-8";
+  const CertifiedRun alone = driven_in_a_plane(fine, ""),
+                     beside = driven_in_a_plane(fine, ", bending_z: {stiffness: 300, modes: 2}");
+  ASSERT_EQ(beside.summary.steps.accepted, alone.summary.steps.accepted);
+  const StepLimit &without = alone.certificate.steps, &with = beside.certificate.steps;
+  EXPECT_GT(with.fastest * with.mean, *with.limit) << "it would be stability";
+  EXPECT_EQ(with.resting, "boom.bending_z[2]");
+  EXPECT_NEAR(with.moving, without.fastest, 1e-3 * without.fastest);
+  EXPECT_EQ(with.cause(), "accuracy");
+  EXPECT_EQ(without.cause(), "accuracy");
+  EXPECT_EQ(without.resting, "");
+  EXPECT_EQ(without.moving, without.fastest);
+}
+
+/// A touch of 1e-13 is enough for unstable steps to grow from, and those of looser tolerances are cut by it.
+TEST(Causes, ModesThatUnstableStepsLetGrowLimitThem) {
+  const std::string loose = "rtol: 1e-4, atol: 1e-4", stiff = ", bending_z: {stiffness: 3000, modes: 2}";
+  const CertifiedRun rests = driven_in_a_plane(loose, stiff),
+                     grows =
+                         driven_in_a_plane(loose, stiff, "initial: {bodies: {boom: {modes: [0, 0, 1.0e-13, 0]}}}\n");
+  EXPECT_EQ(rests.certificate.steps.resting, "boom.bending_z[2]");
+  EXPECT_GT(grows.summary.steps.accepted, 2 * rests.summary.steps.accepted);
+  const StepLimit& limited = grows.certificate.steps;
+  EXPECT_EQ(limited.cause(), "stability");
+  EXPECT_EQ(limited.resting, "");
+  EXPECT_EQ(limited.moving, limited.fastest);
+  ASSERT_TRUE(limited.fewer);
+  EXPECT_EQ(limited.fewer->mode, "boom.bending_z[2]");
+}
+
 /// Steps of a millisecond are short for a blade that its formulation lets fly apart.
 TEST(Causes, StepsThatAreShortEnoughAreNoCause) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml");

@@ -8,7 +8,9 @@
 #include "withy/core/model/switched_load.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/open_loop.hpp"
+#include "withy/study/response.hpp"
 #include "withy/study/run.hpp"
+#include "withy/study/sampled_steady.hpp"
 #include "withy/tests/study/linear_scenes.hpp"
 
 namespace withy::study {
@@ -205,6 +207,42 @@ loads:
 )",
                             5),
             1e-9);
+}
+
+/// Two sampled controllers on a sprung hinge: what they tell is of a sample at the state, not of one at the start.
+TEST(LinearModel, WhatSampledControllersTellFollowsTheState) {
+  const Prepared prepared = scene_of(R"(
+bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+loads:
+  s: {type: hinge-spring, hinge: h, stiffness: 20, preload: 5, damping: 1}
+  c: {type: pid, of: h, hinge: h, sample: 0.1, proportional: 3, derivative: 0.2, filter: 0.05, limit: 5, reference: 1}
+  d: {type: pd-controller, law: constant, sample: 0.1, hinges: {h: {to: 2, stiffness: 1, damping: 0.1, limit: 7}}}
+outputs: {cc: {type: control, of: c}, dd: {type: control, of: d}}
+)");
+  const SteadyState steady = steady_state_of(at_start(prepared));
+  ASSERT_TRUE(steady.converged);
+  const double h = steady.state.y[0];
+  const std::vector<LoadSlot> told = told_slots(prepared.model());
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_NEAR(steady.state.y[told[0].first], 1 - h, 1e-12) << "the error, as files of states keep it";
+  Configuration c = at_start(prepared);
+  c.set_state(steady.state);
+  const LinearModel m = linear_model(c, {{"h"}, {"cc", "dd", "h.0", "h.0.rate"}});
+  const auto value = [&](const std::string& name) {
+    return m.output_values[static_cast<std::size_t>(find(m.outputs, name))];
+  };
+  EXPECT_NEAR(value("cc.error"), 1 - h, 1e-12);
+  EXPECT_NEAR(value("cc.margin"), 5 - value("cc.command"), 1e-12);
+  EXPECT_NEAR(value("dd.error"), 2 - h, 1e-12);
+  EXPECT_NEAR(value("dd.margin"), 7 - (2 - h), 1e-12) << "of what is asked for";
+  const auto row = [&](const std::string& name) { return m.system.C.row(find(m.outputs, name)); };
+  EXPECT_LT((row("cc.error") + row("h.0")).norm(), 1e-10);
+  EXPECT_LT((row("dd.error") + row("h.0")).norm(), 1e-10);
+  EXPECT_LT((row("cc.margin") + row("cc.command")).norm(), 1e-8 * row("cc.command").norm());
+  EXPECT_LT((row("dd.margin") - row("h.0") - 0.1 * row("h.0.rate")).norm(), 1e-10);
+  EXPECT_NEAR(response(c, {"h", "cc.error", {}, {}, 20, {}}).static_gain,
+              -response(c, {"h", "h.0", {}, {}, 20, {}}).static_gain, 1e-10);
 }
 
 /// With one rate of a hinge held, what a sampled load measures of accelerations would be that of a body free in it.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/tests/study/message.hpp"
 #include "withy/tests/study/plugins.hpp"
 
 namespace withy::study {
@@ -41,6 +42,40 @@ TEST(Plausibility, ABeamThatIsNotHeldAtItsRootByFunctionsMadeForThat) {
   // About a pin there is no moment at the tip.
   EXPECT_THAT(remarks_on_held(beam("clamped-free"), "p.tip", "type: revolute, axis: [0, 0, 1]"), testing::IsEmpty());
   EXPECT_EQ(remarks_on_held(beam("clamped-free"), "p.tip", "type: revolute, axis: [0, 1, 0]").size(), 1u);
+}
+
+/// A boom of 1 kg and 4 m with 1.5 kg at its tip deflects by P L³/3EI + w L⁴/8EI. One clamped-free eigenfunction, of
+/// β = 1.8751, φ(1) = 2 and ∫φ = 0.78299, leaves 4/β⁴ = 0.32357 of the third and 2 · 0.78299/β⁴ = 0.12667 of the
+/// eighth, 2.1 % of the whole; two 0.4 %. One polynomial, a parabola, leaves a quarter of the third and is no remedy;
+/// two leave nothing.
+TEST(Plausibility, FunctionsWithoutAMomentAtALoadedTipAreHeldAgainstTheBeamItself) {
+  const auto remarks = [](const std::string& bending) {
+    const SceneValues values = SceneValues::parse(R"(format: withy/1
+time: {end: 1}
+bodies:
+  boom: {type: beam, length: 4, mass_per_length: 0.25, )" +
+                                                      bending + R"(}
+  load: {type: rigid, mass: 1.5, inertia: [0.002, 0.002, 0.002, 0, 0, 0]}
+hinges:
+  root: {type: weld, parent: world, child: boom}
+  mount: {type: weld, parent: boom.tip, child: load}
+)",
+                                                  "planted.yaml");
+    return implausible(prepare(values, plugins()), plugins());
+  };
+  const std::string one = "bending_z: {stiffness: 60, modes: 1}";
+  const std::vector<Remark> found = remarks(one);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].place.path, "/bodies/boom");
+  EXPECT_THAT(found[0].text, HasSubstr("1 bending_z mode of clamped-free carries no moment at the tip"));
+  EXPECT_NEAR(test::number_after(found[0].text, "it deflects "), 2.1, 0.05) << found[0].text;
+  EXPECT_THAT(found[0].text, HasSubstr("choose 2 bending_z of family: orthogonal-polynomials"));
+  EXPECT_THAT(remarks("bending_z: {stiffness: 60, modes: 2}"), testing::IsEmpty());
+  EXPECT_THAT(remarks("bending_z: {stiffness: 60, modes: 2, family: orthogonal-polynomials}"), testing::IsEmpty());
+  // Strains that are off are named alone.
+  const std::vector<Remark> mixed = remarks("bending_y: {stiffness: 60, modes: 2}, " + one);
+  ASSERT_EQ(mixed.size(), 1U);
+  EXPECT_EQ(mixed[0].text, found[0].text);
 }
 
 /// Functions of a pinned root have no moment at a welded one: seen from it, two of pinned-pinned, sin kπx − kπx,
@@ -129,6 +164,59 @@ loads: {servo: {type: pid, hinge: axle, proportional: 100, )" +
   EXPECT_THAT(said("derivative: 10"), HasSubstr("/loads/servo: the servo on 'axle' drives an inertia of 0.001 alone"));
   EXPECT_THAT(said("derivative: 6"), Not(HasSubstr("drives an inertia")));
   EXPECT_THAT(said("derivative: 10, filter: 0.1"), Not(HasSubstr("drives an inertia"))) << "no such pole";
+}
+
+/// All that is said of a scene, with places.
+std::string implausible_in(const std::string& scene) {
+  std::string all;
+  for (const Remark& r :
+       implausible(prepare(SceneValues::parse("format: withy/1\n" + scene, "planted.yaml"), plugins()), plugins()))
+    all += r.place.path + ": " + r.text + "\n";
+  return all;
+}
+
+/// Of 0.9 m beside 1200 m, typed in millimetres, nobody knows which is wrong; of bodies far apart no other is named.
+TEST(Plausibility, TheBodyThatMakesATreeLargeIsNamedWithTheShortOne) {
+  const auto said = [](const std::string& upper, const std::string& hinge) {
+    return implausible_in(
+        "time: {end: 1}\nbodies:\n  upper: " + upper +
+        "\n  fore: {type: beam, length: 0.9, mass_per_length: 1, bending_y: {stiffness: 40, modes: 1, "
+        "family: orthogonal-polynomials}}\nhinges:\n  root: {type: weld, parent: world, child: upper}\n"
+        "  elbow: {type: weld, child: fore, parent: " +
+        hinge + "}\n");
+  };
+  const std::string beam =
+      "{type: beam, mass_per_length: 1, bending_y: {stiffness: 90, modes: 1, family: orthogonal-polynomials}, length: ";
+  EXPECT_THAT(said(beam + "1200}", "upper.tip"),
+              HasSubstr("/bodies/fore: a flexible body 0.9 m long in a tree of 1201 m, most of it 'upper' with 1200 m; "
+                        "are both in metres?"));
+  EXPECT_THAT(said(beam + "1.2}", "upper.tip"), Not(HasSubstr("in a tree of")));
+  EXPECT_THAT(said("{type: rigid, mass: 1}", "upper, offset: {position: [1000, 0, 0]}"),
+              HasSubstr("a flexible body 0.9 m long in a tree of 1001 m; is the length in metres?"));
+}
+
+TEST(Plausibility, AnInertiaWithoutAMassIsNoticed) {
+  const auto said = [](const std::string& body) {
+    return implausible_in("time: {end: 1}\nbodies: {base: {type: rigid, " + body +
+                          "}}\nhinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: base}}\n");
+  };
+  EXPECT_THAT(said("mass: 0, inertia: [4, 4, 5, 0, 0, 0]"), HasSubstr("/bodies/base: an inertia and a mass of 0 kg"));
+  EXPECT_THAT(said("mass: 1, inertia: [4, 4, 5, 0, 0, 0]"), testing::IsEmpty());
+}
+
+/// A mass on a spring at 10 rad/s: rk4 lets it grow from steps of 2 √2 / 10 s on.
+TEST(Plausibility, FixedStepsBeyondWhatTheIntegratorIsStableToAreNoticed) {
+  const auto said = [](const std::string& integrator) {
+    return implausible_in("time: {end: 100}\nintegrator: " + integrator +
+                          "\nbodies: {cart: {type: rigid, mass: 1}}\n"
+                          "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}\n"
+                          "loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 100}}\n");
+  };
+  EXPECT_THAT(said("{name: rk4, step: 0.35}"),
+              testing::AllOf(HasSubstr("/integrator/step: steps of 0.35 s are 1.23"), HasSubstr("at most 0.28")));
+  EXPECT_THAT(said("{name: rk4, step: 0.28}"), testing::IsEmpty());
+  EXPECT_THAT(said("{name: gauss, step: 0.35}"), testing::IsEmpty());
+  EXPECT_THAT(said("{name: dopri5}"), testing::IsEmpty());
 }
 
 }  // namespace

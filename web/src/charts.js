@@ -1,6 +1,6 @@
 // Plots over time: a panel for each group of columns, made when it comes into sight.
 import uPlot from 'uplot';
-import { dashes, drawn, palette, pen_sample } from './data.js';
+import { dashes, drawn, palette, passed_unseen, pen_sample } from './data.js';
 import { difference, nearest_own, own_before, place_of } from './rows.js';
 import { is_rounding, label_of } from './ticks.js';
 
@@ -14,8 +14,9 @@ class Panel {
     this.group = group;
     this.log = false;
     this.element = document.createElement('figure');
-    this.element.innerHTML = `<figcaption><span class="name"></span><button class="log" aria-pressed="false" title="Logarithms of magnitudes (L)">log</button></figcaption><div class="chart"></div><p class="untold soft" hidden></p><div class="more"></div>`;
+    this.element.innerHTML = `<figcaption><span class="name"></span><button class="log" aria-pressed="false" title="Logarithms of magnitudes (L)">log</button></figcaption><div class="chart"></div><p class="untold soft" hidden></p><p class="passed soft" hidden></p><div class="more"></div>`;
     this.element.querySelector('.name').textContent = `${group.title}${group.title.endsWith(group.unit) ? '' : `  [${group.unit}]`}`;
+    if (group.limit) this.say_passed();
     this.button = this.element.querySelector('.log');
     this.button.onclick = () => this.toggle_log();
     this.element.addEventListener('pointerenter', () => { owner.under = this; });
@@ -75,6 +76,14 @@ class Panel {
     });
     this.say(said);
     return out;
+  }
+
+  // Curves below their limits would seem to say that all are kept.
+  say_passed() {
+    const { runs } = this.owner, passed = this.element.querySelector('.passed');
+    const all = runs.flatMap(run => passed_unseen(run).map(what => (runs.length > 1 ? `${run.label}: ` : '') + what));
+    passed.hidden = !all.length;
+    passed.textContent = `Passed, and not drawn here: ${all.join('; ')}.`;
   }
 
   // What of differences nobody can tell.

@@ -168,9 +168,16 @@ export function quantities(run, turns = turning([run])) {
   for (const series of run.validity) {
     const over_limit = v => v / series.limit, few = series.of !== 'rows';
     const from = few ? of_moments(run, () => series.data.map(over_limit)) : of_rows(run, series, over_limit);
-    add('Validity: each over its limit, which is 1', series.name, '1', { ...from, few: few && run.table.rows > run.animation.times.length }, { limit: 1 });
+    add('Validity: rates and deflections, each over its limit, which is 1', series.name, '1', { ...from, few: few && run.table.rows > run.animation.times.length }, { limit: 1 });
   }
   return out;
+}
+
+// What of the certificate's limits a run passes that no curve shows, in words.
+export function passed_unseen(run) {
+  const seen = new Set(run.validity.map(series => series.name)), plain = v => `${+v.toPrecision(2)}`;
+  return (run.run?.certificate?.indicators ?? []).filter(i => i.value > i.limit && !seen.has(i.what))
+    .map(i => `${i.what}: ${plain(i.value)}, limit ${plain(i.limit)}`);
 }
 
 // Groups over all runs: [{title, unit, series: [{name, of: [{run, t, y, spans, whole}], flat, greatest}]}].

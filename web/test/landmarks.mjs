@@ -93,7 +93,7 @@ async function check_plots(browser, folder, troubles) {
   const page = await opened(browser, join(folder, 'strip/report.html'), 't=0&theme=light', troubles);
   await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
   const titles = await page.$$eval('#charts figure .name', all => all.map(e => e.textContent));
-  for (const title of titles) assert.match(title, /\[[^\]]+\]|, [^ ]+$|^Validity: each over its limit/, 'a plot has a unit');
+  for (const title of titles) assert.match(title, /\[[^\]]+\]|, [^ ]+$|^Validity: rates and deflections, each over its limit/, 'a plot has a unit');
   const index = titles.findIndex(t => t.startsWith('Angles'));
   const rows = [10, 60, 110, 140], pin = column('pin');
   const places = await page.evaluate(([index, values]) => {

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { grouped, prepared } from '../src/data.js';
+import { grouped, passed_unseen, prepared } from '../src/data.js';
 import { common_times, difference, nearest_own, own_before, place_of } from '../src/rows.js';
 import { opened, text } from './browser.mjs';
 
@@ -46,11 +46,19 @@ function check_flat() {
   assert.deepEqual([flat(run(10)), flat(run(10), run(10)), flat(run(10), run(40))], [true, true, false]);
 }
 
+// What passes its limit is told of, where no curve shows it.
+function check_passed() {
+  const limit = (what, value) => ({ what, value, limit: 0.1 });
+  const indicators = [limit('energy of a mode', 0.67), limit('tip deflection', 0.2), limit('load', 0.05), limit('rate', null)];
+  assert.deepEqual(passed_unseen({ validity: [{ name: 'tip deflection' }], run: { certificate: { indicators } } }), ['energy of a mode: 0.67, limit 0.1']);
+}
+
 export function check_rows() {
   check_common_times();
   check_differences();
   check_places();
   check_flat();
+  check_passed();
 }
 
 const scenes = {

@@ -295,6 +295,17 @@ async function check_one_at_a_time(browser, folder, run, troubles) {
   await page.close();
 }
 
+// Nobody scrolls on paper.
+async function check_printed_whole(page) {
+  const heights = () => page.$eval('.said', e => [e.scrollHeight, e.clientHeight]);
+  await page.$eval('.said', e => { e.textContent = 'a line\n'.repeat(400); });
+  const [lines, shown] = await heights();
+  assert.ok(lines > 2 * shown, 'on the screen it scrolls');
+  await page.emulateMedia({ media: 'print' });
+  const [printed, seen] = await heights();
+  assert.equal(printed, seen, 'all lines are printed');
+}
+
 // Words and curves of the files: each point told by the pointer, curves taken away by their names.
 async function check_figures(browser, folder, run, troubles) {
   const measured = join(scenes, 'measured/pendulum.csv');
@@ -318,6 +329,7 @@ async function check_figures(browser, folder, run, troubles) {
     if (name === 'terms') assert.ok(samples.length > 2, 'a line for each term');
     for (const [length, dashes] of samples) assert.ok(length >= dashes.split(' ').reduce((sum, d) => sum + +d, 0), `${length} px of ${dashes} on the page of ${name}`);
     await shot(page, `${name}-light`);
+    await check_printed_whole(page);
     await page.close();
   }
   // The dots of a fit are the measurement, in degrees where it is in radians.

@@ -57,9 +57,10 @@ def python_body(body: object, **frames: Any) -> dict[str, Any]:
 
     ``modes``: names, a list of n; none of a rigid body. ``particles``: a list of dicts with ``mass`` [kg], ``position`` [3] and,
     of the displacement r = X + phi q + q gamma q/2, ``phi`` [3, n] and ``gamma`` [3, n, n]. ``sections``: a list of dicts with
-    ``inertia`` [3, 3] [kg m^2], ``position``, ``psi`` [3, n] and ``theta`` [3, n, n] of their rotation, and what particles have.
+    ``inertia`` [3, 3] [kg m^2], ``psi`` [3, n] and ``theta`` [3, n, n] of their rotation, and what particles have but mass.
     ``stations``: places by names, dicts as those of sections without inertia; "root" is the origin where it is not given.
-    ``stiffness``, ``damping``: [n, n]. ``length`` [m], that deflections are measured against. What is left out is zero.
+    ``stiffness``, ``damping``: [n, n]. ``length`` [m], that deflections are measured against. What is left out is zero, but
+    a mass must be there; other members are refused.
 
     Args:
         body: the object.

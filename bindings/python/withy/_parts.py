@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from ._errors import SceneError
-from ._library import as_list, library
+from ._library import folders, library
 from ._result import nearest
 
 SECTIONS = {"bodies": "type", "hinges": "type", "loads": "type", "motions": "type", "outputs": "type",
@@ -27,8 +27,9 @@ _schemas: dict[tuple[str, ...], dict[str, Any]] = {}
 
 
 def schema(plugins: Sequence[str] = ()) -> dict[str, Any]:
-    """The JSON Schema of scenes, of all plugins there are: what ``withy schema`` prints."""
-    key = tuple(as_list(plugins))
+    """The JSON Schema of scenes, of all plugins there are: what ``withy schema`` prints. Libraries that are refused are
+    left out, with a warning."""
+    key = folders(plugins)
     if key not in _schemas:
         _schemas[key] = json.loads(library(key).schema())
     return _schemas[key]
@@ -156,8 +157,9 @@ class Parts:
     """The parts of scenes, by their sections. ``Parts(plugins)`` has those of plugins of your own too."""
 
     def __init__(self, plugins: Sequence[str] = ()) -> None:
+        kept = folders(plugins)
         self.bodies, self.hinges, self.loads, self.motions, self.outputs, self.integrators, self.formulations = (
-            Section(name, plugins) for name in SECTIONS)
+            Section(name, kept) for name in SECTIONS)
 
 
 parts = Parts()

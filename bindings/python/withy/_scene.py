@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from . import _withy
-from ._library import as_list, library
+from ._library import folders, library
 from ._parts import plain
 from ._result import Result, unknown
 from ._studies import Path, Progress, Studies, read_json
@@ -31,7 +31,8 @@ def load(path: Path, plugins: Sequence[Path] = (), *, check: bool = True) -> Sce
         SceneError: where the text cannot be read or, checked, has any problem: all of them, each with its place.
         OSError: where the file cannot.
     """
-    return _checked(_withy.Scene.read(library(plugins), os.fspath(path)), plugins, check)
+    kept = folders(plugins)
+    return _checked(_withy.Scene.read(library(kept), os.fspath(path)), kept, check)
 
 
 def loads(text: str, name: str = "scene", plugins: Sequence[Path] = (), *, check: bool = True) -> Scene:
@@ -41,13 +42,14 @@ def loads(text: str, name: str = "scene", plugins: Sequence[Path] = (), *, check
     Raises:
         SceneError: as load() does.
     """
-    return _checked(_withy.Scene.parse(library(plugins), text, name), plugins, check)
+    kept = folders(plugins)
+    return _checked(_withy.Scene.parse(library(kept), text, name), kept, check)
 
 
-def _checked(made: _withy.Scene, plugins: Sequence[Path], check: bool) -> Scene:
+def _checked(made: _withy.Scene, plugins: Sequence[str], check: bool) -> Scene:
     if check:
         made.check()
-    return Scene._of(made, [os.fspath(p) for p in as_list(plugins)])
+    return Scene._of(made, plugins)
 
 
 def _as_text(value: Any) -> str:
@@ -108,7 +110,7 @@ class Scene(Studies):
     """
 
     def __init__(self, *, plugins: Sequence[Path] = (), **values: Any) -> None:
-        self._plugins: tuple[str, ...] = tuple(os.fspath(p) for p in as_list(plugins))
+        self._plugins: tuple[str, ...] = folders(plugins)
         self._name = "scene"
         self._folder = ""  # where names of files begin: of what was read, or the working folder when it was needed first
         self._read: _withy.Scene | None = None

@@ -13,7 +13,7 @@ import numpy
 
 from . import _withy
 from ._errors import StoreError
-from ._library import as_list, library
+from ._library import folders, library
 from ._result import unknown
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def sweep(plan: Path, executor: concurrent.futures.Executor | None = None, *, ou
     """
     if parts is not None and parts < 1:
         raise ValueError(f"parts: got {parts}; need at least 1")
-    key = (os.path.abspath(os.fspath(plan)), os.path.abspath(os.fspath(out)), tuple(os.path.abspath(os.fspath(p)) for p in as_list(plugins)))
+    key = (os.path.abspath(os.fspath(plan)), os.path.abspath(os.fspath(out)), folders(plugins))
     own = _withy.Sweep(library(key[2]), key[0], key[1], force, list(key[2]))
     stopped: str | None = None
     if executor is None:

@@ -102,7 +102,7 @@ export class Trade {
     const rows = [['formulation', p.formulation], ['modes', p.modes === 0 ? "the scene's" : p.modes], ['mode family', p.family ?? "the scene's"], ['integrator', `${p.integrator}, rtol ${power(p.tolerance)}`]];
     if (p.over.length) rows.push(['at', p.over.join(' ')]);
     rows.push(['outcome', p.status]);
-    if (done(p)) rows.push(['error', `${number(percent(p))} % of range`], ['hinges', `${number(p.hinge_error)} rad or m`], ['tips', `${number(1e3 * p.tip_error)} mm`], ['CPU time', `${number(milliseconds(p))} ms`], ['steps', `${p.steps}, ${p.evaluations} evaluations`], ['front', p.pareto ? 'yes' : 'no']);
+    if (done(p)) rows.push(['error', `${number(percent(p))} % of range`], ...(p.hinge_error === null ? [] : [['hinges', `${number(p.hinge_error)} rad or m`]]), ...(p.tip_error === null ? [] : [['tips', `${number(1e3 * p.tip_error)} mm`]]), ['CPU time', `${number(milliseconds(p))} ms`], ['steps', `${p.steps}, ${p.evaluations} evaluations`], ['front', p.pareto ? 'yes' : 'no']);
     const table = element('table');
     for (const [name, value] of rows) {
       const row = element('tr');

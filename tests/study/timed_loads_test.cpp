@@ -1,0 +1,152 @@
+// Loads that change small motions with time or with an angle, told from those of which a displacement's square changes.
+#include "withy/study/timed_loads.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "withy/study/equilibrium.hpp"
+#include "withy/study/linear_model.hpp"
+#include "withy/study/modes.hpp"
+#include "withy/study/stability.hpp"
+#include "withy/study/turning.hpp"
+#include "withy/tests/study/linear_scenes.hpp"
+
+namespace withy::study {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Two hinges that have nothing to do with each other, and a load on each.
+LinearModel of_two_hinges(const std::string& soft, const std::string& hard) {
+  return linear_model(at_start(scene_of(R"(
+bodies:
+  arm: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  stiff: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  h: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}
+  s: {type: prismatic, axis: [1, 0, 0], parent: world, child: stiff}
+loads:
+  soft: {type: expression, hinge: h, value: ")" +
+                                            soft + R"("}
+  hard: {type: expression, hinge: s, value: ")" +
+                                            hard + R"("}
+)",
+                                        {"time.end=16"})),
+                      {{"h"}, {"h"}});
+}
+
+/// Parametric resonance grows, whatever spring another body has.
+TEST(TimedLoads, ThatChangeSmallMotionsAreSeenBesideWhatIsStiffElsewhere) {
+  for (const std::string hard : {"-1000*s", "-1e7*s", "-1e12*s", "-2e5*s + sin(t)"}) {
+    const LinearModel m = of_two_hinges("-10*(1 + 0.5*sin(6.3*t))*h", hard);
+    EXPECT_TRUE(m.frozen) << hard;
+    EXPECT_THAT(m.shaking, ElementsAre("soft")) << hard;
+  }
+}
+
+/// A stiffness that is negative for half a second.
+TEST(TimedLoads, ThatChangeSmallMotionsForAShortTimeAreSeenWheneverThatIs) {
+  for (const std::string at : {"4.23", "5.23", "5.73", "10.2", "14.77"}) {
+    const LinearModel m = of_two_hinges("-10*(1 - 2*max(0, 1 - abs(t - " + at + ")/0.49))*h", "-100*s");
+    EXPECT_THAT(m.shaking, ElementsAre("soft")) << at;
+  }
+}
+
+/// What has no derivative at rest has none at any time.
+TEST(TimedLoads, OfWhichTimeChangesTheSquareOfASpeedLeaveSmallMotions) {
+  for (const std::string square : {"h.rate*abs(h.rate)", "h*h", "h*h.rate*h", "1e6*h.rate*abs(h.rate)"}) {
+    const LinearModel m = of_two_hinges("-10*h - (1 + 0.3*sin(t))*" + square, "-100*s");
+    EXPECT_FALSE(m.frozen) << square;
+    EXPECT_THAT(m.shaking, IsEmpty()) << square;
+  }
+}
+
+TEST(TimedLoads, ThatMakeUpForEachOtherLeaveSmallMotions) {
+  const auto shaking = [](const std::string& other) {
+    return linear_model(at_start(scene_of(R"(
+bodies: {arm: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}}
+loads:
+  one: {type: expression, hinge: h, value: "-10*sin(t)^2*h"}
+  other: {type: expression, hinge: h, value: ")" +
+                                          other + R"("}
+)")),
+                        {{"h"}, {"h"}})
+        .shaking;
+  };
+  EXPECT_THAT(shaking("-10*cos(t)^2*h"), IsEmpty());
+  EXPECT_THAT(shaking("-11*cos(t)^2*h"), ElementsAre("one", "other"));
+}
+
+/// A blade that slides along the axle it turns about at 2 rad/s. \param loads beside its spring
+Prepared sliding_blade(const std::string& loads) {
+  return scene_of(R"(
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  blade: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [1, 0, 0], parent: world, child: hub}
+  flap: {type: prismatic, axis: [1, 0, 0], parent: hub, child: blade}
+loads:
+  stay: {type: expression, hinge: flap, value: "-10*flap"}
+)" + loads,
+                  {"time.end=10"});
+}
+const std::string sliding_drag =
+    "  drag: {type: expression, hinge: flap, value: \"-(1 + 0.3*sin(axle))*flap.rate*abs(flap.rate)\"}\n";
+const std::string sliding_square =
+    "  square: {type: expression, hinge: flap, value: \"-(1 + 0.3*sin(axle))*flap*flap\"}\n";
+const std::string sliding_shadow =
+    "  shadow: {type: expression, hinge: flap, value: \"5*max(0, 1 - (1 + cos(axle))/0.001)\"}\n";
+
+Configuration turned(const Prepared& prepared) { return {prepared, prepared.scene.initial, {{}, {{"axle", 2.0}}}}; }
+
+TEST(NarrowLoads, OfWhichTheAngleChangesTheSquareOfASpeedLeaveSmallMotions) {
+  const Prepared prepared = sliding_blade(sliding_drag);
+  const ModesAt at = modes_at(turned(prepared), false);
+  ASSERT_TRUE(at.turn.has_value());
+  EXPECT_THAT(at.turn->narrow, IsEmpty());
+  EXPECT_FALSE(at.frozen());
+  const Equilibrium found = find_equilibrium(turned(prepared), {}, test::plugins());
+  ASSERT_TRUE(found.stability.has_value());
+  EXPECT_THAT(found.stability->unknown, IsEmpty());
+}
+
+/// A push within 3 degrees of half a turn, behind angles at which others bend more.
+TEST(NarrowLoads, ThatPushAreNamedBesideThoseOfWhichTheAngleChangesASquare) {
+  for (const std::string& other : {sliding_drag, sliding_square}) {
+    const Prepared prepared = sliding_blade(other + sliding_shadow);
+    const ModesAt at = modes_at(turned(prepared), false);
+    ASSERT_TRUE(at.turn.has_value());
+    EXPECT_EQ(at.turn->narrow, "shadow") << other;
+    const Equilibrium found = find_equilibrium(turned(prepared), {}, test::plugins());
+    EXPECT_FALSE(found.stays) << other;
+    EXPECT_THAT(found.changing, HasSubstr("'shadow'")) << other;
+  }
+}
+
+/// The square is another at every instant, the derivative for three seconds of the run alone.
+TEST(Outputs, WhoseDerivativesTimeChangesLateAreSeenBehindSquaresThatItChangesBefore) {
+  const auto timed = [](const std::string& more) {
+    return linear_model(at_start(scene_of(R"(
+bodies: {b: {type: rigid, mass: 1}}
+hinges: {s: {type: prismatic, axis: [1, 0, 0], parent: world, child: b}}
+loads: {k: {type: hinge-spring, hinge: s, stiffness: 10}}
+outputs:
+  at: {type: hinge, hinge: s}
+  m: {type: expression, value: "at.position^2*(2 + sin(t)))" +
+                                              more + "\"}\n",
+                                          {"time.end=20"})),
+                        {{"s"}, {"m"}})
+        .timed_outputs;
+  };
+  EXPECT_THAT(timed(""), IsEmpty());
+  EXPECT_THAT(timed(" + at.position*max(0, 1 - abs(t - 12.5)/1.5)"), ElementsAre("m"));
+}
+
+}  // namespace
+}  // namespace withy::study
