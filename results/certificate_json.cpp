@@ -90,10 +90,13 @@ Json plan_json(const Certificate& c) {
   for (std::size_t i = 0; i < c.rungs.size(); ++i)
     evaluations[c.rungs[i]] = {{"run", i < plan.run_evaluations.size() ? plan.run_evaluations[i] : 0},
                                {"coarse", plan.evaluations[i]}};
-  return {{"list", std::move(all)},        {"accuracy", plan.accuracy},
-          {"accuracy_used", plan.use},     {"worst", plan.worst},
-          {"windows", plan.windows},       {"repeated", plan.repeated},
-          {"integrator", plan.integrator}, {"evaluations", std::move(evaluations)}};
+  Json above;
+  if (!plan.above.empty()) above = {{"formulation", plan.above}, {"share_at_an_instant", plan.above_share}};
+  return {{"list", std::move(all)},          {"accuracy", plan.accuracy},
+          {"accuracy_used", plan.use},       {"worst", plan.worst},
+          {"windows", plan.windows},         {"repeated", plan.repeated},
+          {"integrator", plan.integrator},   {"evaluations", std::move(evaluations)},
+          {"not_compared", std::move(above)}};
 }
 
 Json estimate_json(const Certificate& c) {

@@ -213,6 +213,12 @@ std::vector<std::string> plan_text(const study::Certificate& certificate) {
   if (plan.estimate)
     lines.push_back(fmt::format("asked {:.3g} % of each output's own range; estimated {:.2g} % of that of {}",
                                 100 * plan.accuracy, 100 * plan.accuracy * plan.use, plan.worst));
+  if (plan.estimate && !plan.above.empty())
+    lines.push_back(
+        fmt::format("that is against {0}: what {1} changes counts as it is at an instant, {2:.2g} % of the "
+                    "range of deflections; over many vibrations, or near buckling, it comes to hundreds of "
+                    "times that, which is not estimated (run it with --formulation {1} to know)",
+                    plan.estimate->against, plan.above, 100 * plan.above_share));
   return lines;
 }
 

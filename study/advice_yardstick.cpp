@@ -240,32 +240,41 @@ void YardstickSearch::explain(const ReferenceFound& found) {
   for (const Remark& remark : remarks) advice_.trouble += fmt::format(". {}: {}", remark.place.path, remark.text);
 }
 
-/// Beams that `exact` does not take, for their modes move the root: "'b', 'c'"; empty where there are none.
-std::string beams_that_move_their_root(const Model& model) {
-  std::string names;
-  for (const BodyNode& node : model.bodies())
-    if (node.body->shape().modes() > 0 && !node.segment && node.body->cut(0) && node.body->rod() == nullptr)
-      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", node.name);
-  return names;
+/// What would give a body the kinematics that it lacks where it bends too far.
+std::string for_exact_kinematics(const Model& model, const std::string& bent) {
+  const auto& bodies = model.bodies();
+  const auto node = std::find_if(bodies.begin(), bodies.end(), [&](const BodyNode& b) {
+    return b.name == bent || (b.segment && b.segment->whole == bent);
+  });
+  const std::string lacking = without_exact_kinematics(model);
+  const char* const parts = node != bodies.end() && node->segment ? "one in more segments" : "one in segments";
+  if (node != bodies.end() && node->body->rod() != nullptr && !lacking.empty())
+    return fmt::format(
+        "for {0} that is better; '{1}' has 'exact', but references have one kinematics for all bodies. What to do: "
+        "make '{1}' {2}, or what lacks 'exact' a beam or rigid",
+        lacking, bent, parts);
+  if (node == bodies.end() || !node->body->cut(0))
+    return fmt::format("that is better. What to do: make '{}' a beam, which has 'exact' and may be one in segments",
+                       bent);
+  return fmt::format(
+      "that is better. What to do: give '{}', whose modes move its root, a family that does not, as "
+      "orthogonal-polynomials, with which a beam has 'exact', or make it {}",
+      bent, parts);
 }
 
 /// Why what is offered is no truth for a body that bends so far.
 void YardstickSearch::explain_bending(const Reference& r) {
   const double use = r.third_order / accuracy_.share.value_or(policy::no_accuracy) / policy::last_reference_use;
   const bool askable = use * accuracy_.share.value_or(0) < policy::no_accuracy;
-  const std::string moving = beams_that_move_their_root(evaluator_.base().model());
   advice_.trouble = fmt::format(
-      "no reference is exact enough to measure against: {} are beyond what {} is "
-      "good for: over a run that may come to {:.2g} % of the range of deflections, and no kinematics is offered that "
-      "is better. What to do: {}{}, or make the body one in segments; or ask for a shorter time (--set time.end=...)",
-      bend_text(r.bend), r.point.formulation, 100 * r.third_order,
+      "no reference is exact enough to measure against: {} ('{}') are beyond what {} is "
+      "good for: over a run that may come to {:.2g} % of the range of deflections, and no kinematics is offered {}{}; "
+      "or ask for a shorter time (--set time.end=...)",
+      bend_text(r.bend), r.bent, r.point.formulation, 100 * r.third_order,
+      for_exact_kinematics(evaluator_.base().model(), r.bent),
       accuracy_.share && askable
-          ? fmt::format("ask for --accuracy {}, which this one is good for; ", accuracy_.times(use).option())
-          : "",
-      moving.empty() ? "make the body a beam, which has 'exact'"
-                     : fmt::format("give the beams whose modes move their root ({}) a family that does not, as "
-                                   "orthogonal-polynomials, with which they have 'exact'",
-                                   moving));
+          ? fmt::format("; or ask for --accuracy {}, which this one is good for", accuracy_.times(use).option())
+          : "");
 }
 
 /// How far the truth is known by now, where that is better than what was told before.

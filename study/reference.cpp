@@ -217,6 +217,7 @@ class ReferenceSearch {
   /// What the kinematics of the highest rung that has a part in a reference lacks.
   static void add_third_order(Reference& reached, const Reference& highest) {
     reached.bend = highest.bend;
+    reached.bent = highest.bent;
     reached.third_order = highest.third_order;
     for (std::size_t k = 0; k < reached.own.size(); ++k) reached.own[k] += highest.third_order * reached.scales[k];
   }

@@ -30,6 +30,7 @@ struct Reference {
   Distances scales;           ///< what relative errors are shares of
   Distances own;              ///< what the readings may be off by (ModeSeries, ThirdOrder); empty: not known
   Bend bend = {};             ///< of the bodies whose kinematics is not exact, where most (ThirdOrder)
+  std::string bent = {};      ///< the body that this is of; empty where none bends
   double third_order = 0;     ///< share of the scales in `own` that is of it
   Walk walk;
   Readings coarser = {};  ///< of the level before, of the nearest alone

@@ -76,6 +76,7 @@ std::optional<Reference> ReferenceRuns::run(const Point& point) {
                 {keep, afford, control_.interrupted});
   r.scales = scales(outputs_, r.ranges, r.energy);
   r.bend = third_order.bend();
+  r.bent = third_order.body();
   r.third_order = third_order.over_a_run();
   return ended(point, std::move(r));
 }

@@ -204,6 +204,10 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
         most.bent() && most.by_angle() ? fmt::format("a section of a bent body is turned by {:.2g} rad", most.angle)
                                        : fmt::format("it is {:.2g} of a body's length", most.deflection));
   }
+  const std::string lacking = beyond ? "" : without_exact_kinematics(prepared.model());
+  if (!lacking.empty())
+    return third + "; not measured, for " + lacking +
+           " has no kinematics of higher order, and what is compared with has one for all bodies";
   if (!beyond) return third + "; not measured, for no model of higher order can treat all bodies of the scene";
   return third +
          (settings.estimate == Estimate::never ? "" : "; `--estimate always` compares with " + beyond->formulation);

@@ -262,6 +262,12 @@ RungPlan plan_rungs(const Prepared& prepared, Registry& registry, double accurac
   // What no rung has is part of what the run may be off by.
   plan.use = planner->use(planner->errors()) + reference.third_order / accuracy;
   plan.worst = planner->worst();
+  // Of less nothing is left even where phases run apart by a thousand times as much.
+  constexpr double worth_a_word = 1e-4;
+  if (reference.rung + 1 < prepared.rungs.size() && reference.third_order > worth_a_word * accuracy) {
+    plan.above = prepared.rungs.back().name;
+    plan.above_share = reference.third_order;
+  }
   const double until = plan.stretches.empty() ? start : plan.stretches.back().stretch.end;
   plan.estimate = {prepared.rungs[reference.rung].name, named(outputs, planner->errors(), until), end,
                    std::accumulate(plan.evaluations.begin(), plan.evaluations.end(), std::size_t{0}),

@@ -33,6 +33,11 @@ struct RungPlan {
   std::optional<ErrorEstimate> estimate;  ///< greatest estimated errors; nothing where none could be made
   double use = 0;                         ///< greatest of them over what is allowed
   std::string worst;                      ///< output of which that is so
+  /// A rung above the one that errors are estimated against, that was not run since what it adds is small at an
+  /// instant: its name, empty where there is none; and that, of the range of deflections (third_order_share). It is in
+  /// `use` as it is there; over a run it may come to hundreds of times that, and how much is not known.
+  std::string above;
+  double above_share = 0;
   /// Why the error is not known, or not to be held; else empty.
   std::string problem;
   std::string integrator;                    ///< of the coarse runs; empty: there were none

@@ -19,6 +19,16 @@ std::string bend_text(const Bend& bend) {
   return fmt::format("deflections of {:.2g} of a body's length", bend.deflection);
 }
 
+std::string without_exact_kinematics(const Model& model) {
+  std::string names;
+  for (const BodyNode& node : model.bodies()) {
+    if (node.body->shape().modes() == 0 || node.body->rod() != nullptr) continue;
+    if (node.segment && node.segment->index > 0) continue;
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", node.segment ? node.segment->whole : node.name);
+  }
+  return names;
+}
+
 ThirdOrder::ThirdOrder(const Prepared& model) : model_(model.model()) {
   for (Tip& end : measured_ends(model_)) {
     const BodyNode& body = model_.bodies()[static_cast<std::size_t>(end.tip.body)];
@@ -46,7 +56,9 @@ void ThirdOrder::look(const State& state) {
   for (const Tip& end : ends_) {
     const auto d = withy::deflection(*seen_, end);
     const Bend now{std::hypot(d[0], d[1], d[2]) / end.length, section_angle(model_, state.y, end)};
-    if (now.size() > bend_.size()) bend_ = now;
+    if (!(now.size() > bend_.size())) continue;
+    bend_ = now;
+    body_ = end.body;
   }
 }
 

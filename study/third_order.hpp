@@ -21,6 +21,9 @@ double third_order_over_a_run(const Bend& bend);
 /// "deflections of 0.11 of a body's length", "sections of a bent body that turn by 1.2 rad".
 std::string bend_text(const Bend& bend);
 
+/// Bodies with modes that have no exact kinematics: "'panel', 'strip'"; empty where all have.
+std::string without_exact_kinematics(const Model& model);
+
 /// The share is that of the body that bends most, of those whose kinematics is not exact; of bodies in segments each
 /// segment is looked at by itself, for what lies between them is exact.
 class ThirdOrder {
@@ -31,6 +34,8 @@ class ThirdOrder {
   void look(const State& state);
   /// Where it was most so far.
   [[nodiscard]] const Bend& bend() const { return bend_; }
+  /// The body that it was of, of a segment the whole; empty where none bent.
+  [[nodiscard]] const std::string& body() const { return body_; }
   [[nodiscard]] double over_a_run() const { return third_order_over_a_run(bend_); }
 
  private:
@@ -38,6 +43,7 @@ class ThirdOrder {
   std::vector<Tip> ends_;
   std::unique_ptr<Observation> seen_;
   Bend bend_;
+  std::string body_;
 };
 
 }  // namespace withy::study

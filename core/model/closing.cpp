@@ -62,6 +62,13 @@ void add_positions(const std::vector<Vector3>& slides, std::vector<ClosingEquati
   }
 }
 
+/// Whether a body, −1 being the world, is `carrier` or carried by it.
+bool carries(const Model& model, std::size_t carrier, int body) {
+  while (body >= 0 && static_cast<std::size_t>(body) != carrier)
+    body = model.hinges()[static_cast<std::size_t>(body)].parent;
+  return body >= 0;
+}
+
 }  // namespace
 
 std::optional<std::vector<ClosingEquation>> closing_equations(const Hinge& hinge) {
@@ -105,6 +112,12 @@ std::vector<const LoopClosure*> loops_of(const Model& model) {
   for (const LoadNode& load : model.loads())
     if (const auto* loop = dynamic_cast<const LoopClosure*>(load.load.get())) loops.push_back(loop);
   return loops;
+}
+
+bool in_loop(const Model& model, std::size_t body) {
+  for (const LoopClosure* loop : loops_of(model))
+    if (carries(model, body, loop->a().body) != carries(model, body, loop->b().body)) return true;
+  return false;
 }
 
 void require_tree(const Model& model, const std::string& what) {

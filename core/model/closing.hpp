@@ -59,6 +59,9 @@ class LoopClosure final : public BoundLoad {
 
 /// The loops of a model, in their order.
 std::vector<const LoopClosure*> loops_of(const Model& model);
+/// Whether a loop runs through the inboard hinge of a body: it is on the way, within the tree, from one frame of a loop
+/// to the other.
+bool in_loop(const Model& model, std::size_t body);
 /// \throws std::invalid_argument where the model has loops; `what` knows nothing of them.
 void require_tree(const Model& model, const std::string& what);
 

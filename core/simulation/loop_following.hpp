@@ -24,7 +24,9 @@ Eigen::MatrixXd closed_motions(const Eigen::MatrixXd& rows, const Eigen::VectorX
 
 /// What the loops make of the elastic coordinates q of one body while all other bodies stay as they are bent.
 struct LoopBound {
-  Matrix3X turn;          ///< ω of the body frame per q̇, body axes, which the hinges give it that follow
+  /// ω per q̇ that the hinges which follow give the section at the inboard hinge, axes of the root's section. What modes
+  /// turn that section by in the body frame is no part of it.
+  Matrix3X turn;
   Eigen::MatrixXd bound;  ///< rows · q̇ = 0: of what no hinge can follow; equations × modes
 };
 

@@ -175,8 +175,18 @@ MotionStiffness::Own::Own(const ModalShape& shape, const HeldSection* root) {
   solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S.cols());
 }
 
+/// The section from which fields are seen. In a loop LoopFollowing tells the turns of all hinges, along what they leave
+/// free too: what modes turn the section by is no turn of a hinge.
+std::optional<HeldSection> MotionStiffness::root_of(const Model& model, std::size_t body) {
+  if (!in_loop(model, body)) return held_root(model, body);
+  const auto frame = static_cast<std::size_t>(model.hinges()[body].child_frame);
+  HeldSection root{model.bodies()[body].frames[frame].section};
+  if (root.leaves_all()) return {};
+  return root;
+}
+
 MotionStiffness::MotionStiffness(const Model& model, std::size_t body, const MotionStiffness* twin)
-    : body_(body), root_(held_root(model, body)) {
+    : body_(body), root_(root_of(model, body)) {
   if (twin != nullptr && !same_root(root_, twin->root_)) twin = nullptr;
   own_ = twin != nullptr ? twin->own_
                          : std::make_shared<Own>(model.bodies()[body].body->shape(), root_ ? &*root_ : nullptr);

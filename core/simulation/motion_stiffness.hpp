@@ -46,8 +46,9 @@ std::optional<HeldSection> held_root(const Model& model, std::size_t body);
 /// carried at a station adds (Σ m (a − g))·Γ there. A load's force F at a frame, or that of a closed loop, does the
 /// work of −F·Γ. Moments, of carried bodies about their station and of loads, are left out.
 ///
-/// Where hinges of closed loops turn the body by θ = T q as it bends, a point moves by θ × Φq + ½ θ × (θ × X) more: of
-/// a rod with a pin at each end Γ is then seen from the line between its pins, and the load is held against the
+/// In closed loops Γ is seen from the section at the inboard hinge as if that held it. Where hinges of the loop turn
+/// that section by θ = T q as the body bends, a point moves by θ × Φq + ½ θ × (θ × X) more: of a rod with a pin at each
+/// end Γ is then seen from the line between its pins, whatever its modes turn, and the load is held against the
 /// buckling load of the pinned rod.
 class MotionStiffness {
  public:
@@ -61,7 +62,7 @@ class MotionStiffness {
   /// At the motions of the tree. Allocates nothing.
   /// \param loads what loads exert at their frames, world axes, in the order of the model's loads and of the frames of
   ///   each, then those of loops; empty: nothing
-  /// \param loop how loops let the body turn and bend; null: its inboard hinge is held
+  /// \param loop how loops let the body turn and bend, as LoopFollowing says; null: its inboard hinge is held
   LoadRatio evaluate(const std::vector<BodyMotion>& bodies, std::span<const Wrench> loads = {},
                      const LoopBound* loop = nullptr);
 
@@ -112,6 +113,8 @@ class MotionStiffness {
                    LoadRatio& ratio) const;
   /// As seen from the root.
   [[nodiscard]] PointExpansion seen(const PointExpansion& at) const;
+
+  static std::optional<HeldSection> root_of(const Model& model, std::size_t body);
 
   std::size_t body_;
   std::optional<HeldSection> root_;  ///< nothing: fields are those of the body's frame

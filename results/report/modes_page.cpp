@@ -70,7 +70,7 @@ Json branch_json(const study::ModesOf& run, std::size_t branch) {
                       {"mac", likeness(first, shape)},
                       {"shape", shares_json(at, shape)}});
   }
-  return {{"at", std::move(values)}};
+  return {{"number", branch + 1}, {"at", std::move(values)}};
 }
 
 std::string state_of(const study::BladeModes& seen, const study::NamedMode& m) {
@@ -126,16 +126,20 @@ Json blades_json(const study::ModesOf& run, std::size_t count) {
   return blades == 0 ? Json() : Json{{"count", blades}, {"branches", std::move(branches)}};
 }
 
-/// Branches are followed from the first value; those of rigid motion alone are left out.
+/// Branches are followed from the first value and have the numbers of modes.csv; those of rigid motion alone are left
+/// out, and counted.
 Json run_json(const study::ModesOf& run, std::size_t count) {
   Json branches = Json::array();
-  for (std::size_t b = 0; b < run.branches() && branches.size() < std::max(count, least_branches); ++b) {
+  std::size_t rigid = 0;
+  for (std::size_t b = 0; b < run.branches(); ++b) {
     const bool moves = std::any_of(run.points.begin(), run.points.end(),
                                    [b](const study::ModesAt& at) { return at.on(b) != nullptr && !at.on(b)->rigid; });
-    if (moves) branches.push_back(branch_json(run, b));
+    if (!moves) ++rigid;
+    if (moves && branches.size() < std::max(count, least_branches)) branches.push_back(branch_json(run, b));
   }
   return {{"formulation", run.formulation},
           {"branches", std::move(branches)},
+          {"rigid", rigid},
           {"blades", blades_json(run, count)},
           {"floquet", floquet_json(run)}};
 }

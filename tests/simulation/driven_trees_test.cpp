@@ -89,6 +89,10 @@ TEST(DrivenTrees, a_law_without_a_coordinate_makes_the_run_inaccurate_and_is_nam
   EXPECT_EQ(kept.status, RunStatus::completed) << kept.message;
   EXPECT_EQ(lost.status, RunStatus::inaccurate);
   EXPECT_NE(lost.message.find("Motion 'lost' has no finite coordinate at t = "), std::string::npos) << lost.message;
+  EXPECT_EQ(kept.lost_motion.name, "");
+  EXPECT_EQ(lost.lost_motion.name, "lost");
+  EXPECT_GT(lost.lost_motion.time, 1);
+  EXPECT_LE(lost.lost_motion.time, 1.1) << "the first output after it is lost";
 }
 
 }  // namespace

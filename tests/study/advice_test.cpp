@@ -21,6 +21,7 @@ namespace withy::study {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 using test::plugins;
 
@@ -97,7 +98,34 @@ motions: {slew: {hinge: axle, type: quintic, to: 90 deg, duration: 0.8}}
   const Advice advice =
       advise(evaluator, candidates_for(strip, plugins(), usual_axes()), Accuracy::parse("2%"), {}, {});
   EXPECT_FALSE(advice.choice);
-  EXPECT_THAT(advice.trouble, HasSubstr("of a body's length are beyond what quadratic is good for"));
+  EXPECT_THAT(advice.trouble, HasSubstr("of a body's length ('strip') are beyond what quadratic is good for"));
+  EXPECT_THAT(advice.trouble, HasSubstr("no kinematics is offered that is better. What to do: make 'strip' a beam"));
+}
+
+/// What is bent is a beam, which has exact kinematics; the plate at its tip, edgewise, is not bent, and has none.
+TEST(StudyAdvice, WhatKeepsABentBeamFromExactKinematicsIsNamed) {
+  const Prepared boom = prepare(SceneValues::parse(R"(format: withy/1
+time: {end: 1, output: 0.02}
+bodies:
+  hub: {type: rigid, mass: 5, inertia: [1, 1, 1, 0, 0, 0]}
+  boom: {type: beam, length: 1.5, mass_per_length: 1, bending_y: {stiffness: 30, modes: 2, family: orthogonal-polynomials}}
+  panel: {type: plate, length: 0.5, width: 0.4, mass_per_area: 1, stiffness: 20, poisson_ratio: 0.3, modes: 2}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub, child: boom}
+  end: {type: weld, parent: boom.tip, child: panel}
+loads: {motor: {type: hinge-effort, hinge: axle, law: sine, amplitude: 8, period: 1.5}}
+)",
+                                                   "boom.yaml"),
+                                plugins());
+  const Outputs outputs(boom.model());
+  Evaluator evaluator(boom, plugins(), outputs, {});
+  const Advice advice = advise(evaluator, candidates_for(boom, plugins(), usual_axes()), Accuracy::parse("1%"), {}, {});
+  EXPECT_FALSE(advice.choice);
+  EXPECT_THAT(advice.trouble, HasSubstr("of a body's length ('boom') are beyond what quadratic is good for"));
+  EXPECT_THAT(advice.trouble, HasSubstr("for 'panel' that is better; 'boom' has 'exact'"));
+  EXPECT_THAT(advice.trouble, HasSubstr("make 'boom' one in segments"));
+  EXPECT_THAT(advice.trouble, Not(HasSubstr("make 'boom' a beam")));
 }
 
 TEST(StudyAdvice, WhatThereWasNoTimeForIsAdvisedWhereItIsGivenMore) {

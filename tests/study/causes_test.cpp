@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "withy/study/plausibility.hpp"
+#include "withy/study/remedy.hpp"
 #include "withy/tests/study/message.hpp"
 #include "withy/tests/study/planted.hpp"
 
@@ -108,6 +109,26 @@ motions: {turn: {type: expression, hinge: axle, value: sqrt(1 - t) * sin(t)}}
   // What it advises helps.
   SceneValues shorter = SceneValues::parse("format: withy/1\n" + scene, "planted.yaml");
   EXPECT_EQ(outcome_of(shorter.set("time.end", Value(0.99), "the test")).status, RunStatus::completed);
+}
+
+// Its rate and acceleration go on: the integrator, which asks for these, does not see it, and no step helps.
+TEST(Causes, AMotionThatLosesItsCoordinateAlone) {
+  const Prepared prepared = prepare(SceneValues::parse(R"(format: withy/1
+time: {end: 1}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+motions: {turn: {type: constant-rate, hinge: axle, rate: 1}}
+)",
+                                                       "planted.yaml"),
+                                    plugins());
+  RunSummary summary;
+  summary.status = RunStatus::inaccurate;
+  EXPECT_THAT(remedy_text(prepared, summary), HasSubstr("take shorter steps"));
+  summary.lost_motion = {"turn", 0.8};
+  const std::string text = remedy_text(prepared, summary);
+  EXPECT_THAT(text, HasSubstr("What to do: change the law of 'turn' (line 5 of the scene)"));
+  EXPECT_THAT(text, HasSubstr("--set time.end=0.792."));
+  EXPECT_THAT(text, Not(HasSubstr("shorter steps")));
 }
 
 TEST(Causes, ALoadThatCeasesToBeFinite) {

@@ -118,8 +118,18 @@ async function check_modes(browser, folder, run, troubles) {
   run('modes', join(scenes, 'two-link-slew.yaml'), '--lock', 'shoulder,elbow', '--out', join(folder, 'locked'));
   const single = await opened(browser, join(folder, 'locked/report.html'), 'theme=light', troubles);
   assert.ok(await single.locator('table.rows tbody tr').count() >= 2);
+  assert.doesNotMatch(await text(single, '.answer'), /rigid/);
   await shot(single, 'modes-single');
   await single.close();
+  // Rows have the numbers of modes.csv, where rigid motions come first.
+  const free = join(folder, 'free');
+  run('modes', join(scenes, 'two-link-slew.yaml'), '--out', free);
+  const listed = readFileSync(join(free, 'modes.csv'), 'utf8').trim().split('\n').slice(1).map(line => line.split(',')), rigid = listed.filter(row => row[7] === '');
+  assert.equal(rigid.length, 2);
+  const rows = await opened(browser, join(free, 'report.html'), 'theme=light', troubles);
+  assert.deepEqual(await rows.$$eval('table.rows tbody tr', all => all.map(r => r.children[0].textContent)), listed.slice(rigid.length, rigid.length + 10).map(row => row[2]));
+  assert.match(await text(rows, '.answer'), /2 rigid motions are not listed/);
+  await rows.close();
 }
 
 // Lines of the rate are inside the frame for rates of either sign, whichever way they are swept: from zero to both sides.
@@ -185,6 +195,11 @@ async function check_blades(browser, folder, run, troubles) {
   const marks = () => page.locator('#campbell .mark').count();
   assert.equal(await marks(), blades.branches.flatMap(b => b.at).filter(Boolean).length);
   assert.match(await text(page, '#campbell'), /1 per turn[^]*3 per turn[^]*6 per turn/);
+  for (const [most, lines] of [['4', ['1', '3']], ['12', ['1', '3', '6', '9', '12']], ['1', ['1']], ['0', []], ['6', ['1', '3', '6']]]) {
+    await page.selectOption('select[aria-label="Lines of the rate up to"]', most);
+    const drawn = await page.locator('#campbell text.harmonic').evaluateAll(all => all.map(e => e.textContent.split(' ')[0]));
+    assert.deepEqual(drawn.sort((a, b) => a - b), lines, `up to ${most}`);
+  }
   assert.match(await text(page, '#campbell'), /forward|backward|collective/);
   assert.doesNotMatch(await text(page, '.answer'), /one frozen angle/);
   await shot(page, 'blades-light');

@@ -23,7 +23,7 @@ function cut(points, floor) {
 export class Modes {
   constructor(holder, data) {
     const blades = Math.max(...data.runs.map(run => run.blades?.count ?? 0));
-    Object.assign(this, { data, blades, seen_from: blades ? standing : turning, unit: 'Hz', chosen: null, harmonics: data.rate ? 4 : 0 });
+    Object.assign(this, { data, blades, seen_from: blades ? standing : turning, unit: 'Hz', chosen: null, harmonics: data.rate ? (blades ? 2 * blades : 4) : 0 });
     this.swept = data.points > 1;
     this.tools = element('div', null, { class: 'bar' });
     this.names = element('div');
@@ -54,7 +54,13 @@ export class Modes {
     if (stands) return 'Modes of equal blades by the multi-blade transform: frequencies that an instrument on what does not turn sees, named after the blades\' coordinate and the way its pattern runs round. Branches are followed by shape: a name is that at the beginning and, where it becomes another, at the end. What does not swing has the frequency 0. Triangles mark motions that grow.';
     const most = this.data.loops ? 'what takes part most, a coordinate or a state of a load' : 'the coordinate that holds most of the kinetic energy';
     return this.swept ? `Branches are followed by shape: a name is of ${most}, at the beginning and, where it becomes another, at the end. Triangles mark motions that grow. Click a mark for its shape.`
-      : `A mode is named after ${most}. Click a row for its shape.`;
+      : `A mode is named after ${most}. Click a row for its shape.${this.rigid()}`;
+  }
+
+  // Numbers are those of modes.csv, which has these too.
+  rigid() {
+    const most = Math.max(...this.data.runs.map(run => run.rigid));
+    return most ? ` ${most === 1 ? 'One rigid motion is' : `${most} rigid motions are`} not listed; numbers count ${most === 1 ? 'it' : 'them'}.` : '';
   }
 
   name_of(branch, run) {
@@ -74,7 +80,8 @@ export class Modes {
     };
     if (this.blades) add('Seen from', [standing, turning], standing, v => { this.seen_from = v; this.see(); });
     if (this.swept) add('Frequencies in', ['Hz', 'rad/s'], 'Hz', v => { this.unit = v; });
-    if (this.swept && this.data.rate) add('Lines of the rate up to', [0, 1, 2, 3, 4, 6, 8, 12], this.harmonics, v => { this.harmonics = +v; });
+    const lines = [0, 1, 2, 3, 4, 6, 8, 12, ...[1, 2, 3, 4].map(k => k * this.blades)];
+    if (this.swept && this.data.rate) add('Lines of the rate up to', [...new Set(lines)].sort((a, b) => a - b), this.harmonics, v => { this.harmonics = +v; });
   }
 
   paint(colours) {
@@ -136,8 +143,8 @@ export class Modes {
 
   // Multiples of the rate, the highest first: what does not turn meets those of the blades that pass.
   multiples() {
-    if (this.seen_from === standing && this.harmonics) return [2 * this.blades, this.blades, 1];
-    return Array.from({ length: this.harmonics }, (_, k) => this.harmonics - k);
+    const all = Array.from({ length: this.harmonics }, (_, k) => this.harmonics - k);
+    return this.seen_from === standing ? all.filter(n => n === 1 || n % this.blades === 0) : all;
   }
 
   // n times the rate: where a branch crosses one, n impulses a turn meet it. From 0 they rise to both sides.
