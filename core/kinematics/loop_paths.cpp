@@ -15,11 +15,11 @@ std::vector<FrameIndex> frames_of(const Model& model) {
   return frames;
 }
 
-/// Length of the longest flexible body, or where that is more the greatest distance from its body's root of a frame
-/// that a hinge or a constraint joins, or of a hinge or closing frame from what it is placed in; 1 where all are at one
-/// place. Frames that nothing joins do not count: they are no part of what moves, and reactions that depend on this
-/// length, as those of redundant loops do, are the same whatever else a scene watches or loads.
-double size_of_largest(const Model& model) {
+}  // namespace
+
+// Frames that nothing joins do not count: they are no part of what moves, and reactions that depend on this length, as
+// those of redundant loops do, are the same whatever else a scene watches or loads.
+double length_of_loops(const Model& model) {
   double size = 0;
   const auto reach = [&](int body, int frame) {
     if (body < 0) return;
@@ -40,10 +40,8 @@ double size_of_largest(const Model& model) {
   return size > 0 ? size : 1;
 }
 
-}  // namespace
-
 LoopPaths::LoopPaths(const Model& model, Terms terms)
-    : model_(model), frames_(frames_of(model)), paths_(model, terms, frames_, true), length_(size_of_largest(model)) {
+    : model_(model), frames_(frames_of(model)), paths_(model, terms, frames_, true), length_(length_of_loops(model)) {
   int next = 0;
   const auto end = [&](const FrameIndex& frame, const Pose& pose) { return End{frame.body < 0 ? -1 : next++, pose}; };
   for (const LoopClosure* c : loops_of(model)) {

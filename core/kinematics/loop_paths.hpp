@@ -10,6 +10,11 @@
 
 namespace withy {
 
+/// ℓ [m] of a model's loops, by which rotations count as gaps: the length of the longest flexible body, or where that
+/// is more the greatest distance from its body's root of a frame that a hinge or a constraint joins, or of a hinge or
+/// closing frame from what it is placed in; 1 where all are at one place.
+double length_of_loops(const Model& model);
+
 /// With g the gaps of all closing equations, those of directions times `length`, and J u = ġ. Geometry is not truncated
 /// in any formulation: it is that of the bodies' strain kinematics, so that J is the derivative of g and Jᵀ its exact
 /// transpose. With F = (R, p) on a, M on b, r = p_M − p_F and the directions d = R_F a, f = R_M b in world axes,
@@ -21,8 +26,7 @@ class LoopPaths {
   LoopPaths(const Model& model, Terms terms);
   /// Of equations, in all loops.
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// ℓ [m]: the length of the longest flexible body, or the greatest distance at which a hinge or a constraint joins a
-  /// body, from its root, where that is more.
+  /// ℓ [m], see length_of_loops.
   [[nodiscard]] double length() const { return length_; }
   /// Bytes of memory that the functions below share, aligned to 64.
   [[nodiscard]] std::size_t work_size() const { return work_size_; }

@@ -97,14 +97,26 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
       n.happened += 1;
       n.last = state.time;
       book_.set_numbers(state.y, i, n);
-      if (!perform(i, state)) return done_;
-      done_.acted.push_back(plain_ + i);
+      double moved = 0;
+      if (!perform_and_measure(i, state, moved)) return done_;
+      done_.acted.push_back({plain_ + i, moved});
       done_.stops = done_.stops || events[i].stops;
       for (std::size_t k = 0; k < events.size(); ++k)
         if (events[k].when == ActingEvent::When::after && events[k].after == i && !over_at(k, state.y)) wait(k);
     }
     if (done_.acted.size() == before) return done_;
   }
+}
+
+/// As `perform`; sets by what that has moved the event's own number.
+bool EventActions::perform_and_measure(std::size_t event, State& state, double& moved) {
+  const ActingEvent& acting = book_.plan().events[event];
+  if (acting.actions.empty() || acting.when != ActingEvent::When::passes || over_at(event, state.y))
+    return perform(event, state);
+  const double before = value(acting, state.time, state.y);
+  if (!perform(event, state)) return false;
+  moved = value(acting, state.time, state.y) - before;
+  return true;
 }
 
 /// Does what an event asks for; false where the mass matrix cannot be solved.

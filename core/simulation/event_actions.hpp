@@ -32,12 +32,17 @@ class EventActions {
   /// The next time [s] at or after that of the state at which an event is due; infinity where none is.
   [[nodiscard]] double next(const State& state) const;
 
+  /// An event that has acted.
+  struct Acted {
+    std::size_t watched = 0;  ///< its index in `watched`
+    double moved = 0;         ///< by what its own actions have changed the value of its function, if it looks for more
+  };
   /// What `act` has done.
   struct Done {
-    std::vector<std::size_t> acted;  ///< indices in `watched`, in their order
-    bool stops = false;              ///< one of them ends the run
-    bool crowded = false;            ///< events go round in a circle, without time between them
-    Evaluation evaluation;           ///< of the impulses; not ok: there are none, the mass matrix cannot be solved
+    std::vector<Acted> acted;  ///< in their order
+    bool stops = false;        ///< one of them ends the run
+    bool crowded = false;      ///< events go round in a circle, without time between them
+    Evaluation evaluation;     ///< of the impulses; not ok: there are none, the mass matrix cannot be solved
   };
   /// Notes that the events of these indices in `watched` happen at the state and does all that is due then: first in
   /// the order of the file, then what follows from it.
@@ -47,6 +52,7 @@ class EventActions {
   [[nodiscard]] double value(const ActingEvent& event, double t, std::span<const double> y);
   [[nodiscard]] bool over_at(std::size_t event, std::span<const double> y) const;
   bool perform(std::size_t event, State& state);
+  bool perform_and_measure(std::size_t event, State& state, double& moved);
   void change_form(State& state, const EventAction& action);
   Evaluation settle(State& state);
   void respond(std::span<const double> y, std::span<const double> driven, std::span<const double> efforts,

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/effort_watch.hpp"
@@ -173,6 +174,7 @@ class Monitor {
   [[nodiscard]] double kinetic(const State& state, const Energies& energies);
   [[nodiscard]] double potential(const State& state, const Energies& energies);
   void audit_momenta(const Energies& energies);
+  void find_rounding_energy(const State& state);
 
   bool own_energy_ = false;
   bool floats_;  ///< momenta are looked at, since they may be conserved
@@ -180,8 +182,13 @@ class Monitor {
   double linear_error_ = 0, angular_error_ = 0, untruncated_error_ = 0;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;
-  int initial_sign_ = 0;  ///< of det M
-  double checked_;        ///< time of the last look at the sign of det M
+  const ClosedLoops* loops_;                      ///< null: there are none
+  double length_of_loops_, rounding_energy_ = 0;  ///< [m], [J]: as much or less is no energy
+  std::vector<double> multipliers_;
+  Work loops_work_;
+  std::size_t steps_ = 0;  ///< accepted
+  int initial_sign_ = 0;   ///< of det M
+  double checked_;         ///< time of the last look at the sign of det M
   std::optional<SignChange> sign_change_;
   std::size_t rejected_ = 0;  ///< steps rejected so far
   std::size_t burst_ = 0;     ///< of these, in the present burst

@@ -95,7 +95,7 @@ bool Stepping::act(std::span<const std::size_t> happened) {
   for (int round = 0;; ++round) {
     acted_on_ = sample_ = state();
     const EventActions::Done& done = actions_->act(sample_, happened_);
-    for (const std::size_t event : done.acted)
+    for (const auto& [event, moved] : done.acted)
       observer_->passed({actions_->watched()[event].name, sample_.time, direction_of(event)});
     if (!done.evaluation.ok()) {
       ended_.step = {StepResult::Outcome::singular, done.evaluation.body};
@@ -106,25 +106,31 @@ bool Stepping::act(std::span<const std::size_t> happened) {
     observer_->acted(acted_on_, state());
     observer_->jumped();
     if (done.stops) return end(Cause::event);
-    const std::vector<std::size_t> acted = done.acted;
+    const std::vector<EventActions::Acted> acted = done.acted;
     if (!leap(acted)) return false;
     if (happened_.empty()) return true;
   }
 }
 
-/// Deals with what events have made pass its value, but for those that have just acted.
-bool Stepping::leap(const std::vector<std::size_t>& acted) {
+/// Deals with what events have made pass its value. What an event's own actions do to its own number is no passage that
+/// it waits for: it would act again and again.
+bool Stepping::leap(const std::vector<EventActions::Acted>& acted) {
   handled_ = zeros_.leap(state());
   happened_.clear();
   sample_ = state();
   bool stops = false;
+  const auto by_itself = [&](const Zero& zero) {
+    return std::any_of(acted.begin(), acted.end(), [&](const EventActions::Acted& a) {
+      return a.watched == zeros_.index(zero) && zeros_.is_due_to(a.moved, zero);
+    });
+  };
   for (const Zero& zero : handled_) {
     if (const auto load = zeros_.switching(zero.function)) {
       if (clocks_.renew(sample_, load->first, {load->second, zero.direction})) observer_->switched();
     } else if (const std::size_t event = zeros_.index(zero); !actions_->acts(event)) {
       note(zero);
       stops = stops || zeros_.event(zero.function).stops;
-    } else if (!actions_->over(event, sample_) && std::find(acted.begin(), acted.end(), event) == acted.end()) {
+    } else if (!actions_->over(event, sample_) && !by_itself(zero)) {
       happened_.push_back(event);
     }
   }

@@ -117,7 +117,7 @@ class Stepping {
   [[nodiscard]] bool sample_is_known() const;
   void check_arithmetic();
   bool act(std::span<const std::size_t> happened);
-  bool leap(const std::vector<std::size_t>& acted);
+  bool leap(const std::vector<EventActions::Acted>& acted);
   [[nodiscard]] int direction_of(std::size_t event) const;
   [[nodiscard]] double next_instant() const;
   [[nodiscard]] bool changes_the_run(const Zero& zero) const;

@@ -61,6 +61,7 @@ ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const
   unsure_.assign(values_.size(), -1);
   near_.resize(values_.size());
   landed_.resize(values_.size());
+  just_before_.resize(values_.size());
   end_signs_.resize(values_.size());
   ends_.resize(values_.size());
   for (Row& row : rows_) row.values.resize(values_.size());
@@ -131,30 +132,50 @@ void ZeroWatch::begin_at(const State& state) {
 const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& before, const State& state,
                                                     std::span<const Zero> known) {
   zeros_.clear();
+  const double time_before = std::nextafter(state.time, before.time);
   evaluate(before.time, before.y, ends_);
+  evaluate(time_before, state.y, just_before_);
   evaluate(state.time, state.y, values_);
   landed_ = values_;
   signs_ = start_signs_;  // what else `find` has seen lies beyond this state, or is seen again
-  for (const Zero& zero : known) {
-    signs_[zero.function] = zero.direction;
-    values_[zero.function] = 0;  // up to rounding of either sign
-  }
+  const auto is_near = [&](std::size_t f) { return std::abs(landed_[f]) <= 1e-9 * std::abs(ends_[f]); };
+  const auto has_passed = [&](std::size_t f, int direction) {
+    signs_[f] = direction;
+    values_[f] = 0;  // up to rounding of either sign
+  };
+  for (const Zero& zero : known) has_passed(zero.function, zero.direction);
+  // What passes here in the direction that nobody notices has passed too, as it is seen beyond this state.
+  for (std::size_t f = 0; f < signs_.size(); ++f)
+    if (values_[f] != 0 && is_near(f) && signs_[f] * before_[f] < 0 && !noticed(f, before_[f]))
+      has_passed(f, before_[f]);
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     const int now = sign(values_[f]);
     if (now == 0) continue;
     if (signs_[f] * now < 0 && noticed(f, now) && !is_kink(f)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
   }
-  // As near as interpolation and root finding come, and as near as this state is.
+  // As near as interpolation and root finding come, and as near as this state is; a jump leaves no doubt.
   const auto passed = [&](const Zero& zero) {
-    unsure_[zero.function] = std::max(2 * std::abs(landed_[zero.function]), 1e-9 * std::abs(ends_[zero.function]));
+    const std::size_t f = zero.function;
+    const bool jumped = has_jumped(f, state.time - before.time, state.time - time_before);
+    unsure_[f] = std::max(jumped ? 0 : 2 * std::abs(landed_[f]), 1e-9 * std::abs(ends_[f]));
   };
   std::for_each(known.begin(), known.end(), passed);
   std::for_each(zeros_.begin(), zeros_.end(), passed);
   // Functions that look for the same zero in the other direction are as near.
   for (std::size_t f = 0; f < signs_.size(); ++f)
-    if (std::abs(landed_[f]) <= 1e-9 * std::abs(ends_[f])) passed({state.time, f, 0});
+    if (is_near(f)) passed({state.time, f, 0});
   return zeros_;
+}
+
+bool ZeroWatch::has_jumped(std::size_t function, double length, double instant) const {
+  const double from = just_before_[function], to = landed_[function];
+  if (!(from * to < 0)) return false;
+  // What it has been in the step, which `find` has looked into. No smooth function changes by as much in an instant.
+  double size = std::abs(ends_[function]);
+  for (const Row& row : rows_) size = std::max(size, std::abs(row.values[function]));
+  constexpr double smooth = 1e-6, instants = 64;
+  return std::abs(to - from) > std::max(smooth, instants * instant / length) * size;
 }
 
 const std::vector<ZeroWatch::Zero>& ZeroWatch::leap(const State& state) {
@@ -168,6 +189,11 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::leap(const State& state) {
     signs_[f] = now;
   }
   return zeros_;
+}
+
+bool ZeroWatch::is_due_to(double moved, const Zero& zero) const {
+  const double known_to = std::max(unsure_[zero.function], 1e-9 * std::abs(moved));
+  return zero.direction * (values_[zero.function] - moved) <= known_to;
 }
 
 bool ZeroWatch::looks(std::size_t function, std::span<const double> y) const {

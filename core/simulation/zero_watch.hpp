@@ -53,6 +53,9 @@ class ZeroWatch {
   /// At a state that events have changed: the zeros passed by that. Functions that `land` saw pass have, until an event
   /// moves them by more than their zeros are known to.
   const std::vector<Zero>& leap(const State& state);
+  /// Whether a zero that `leap` has given would not be one, but for rounding, had the value of its function not changed
+  /// by `moved`.
+  [[nodiscard]] bool is_due_to(double moved, const Zero& zero) const;
   /// Takes the signs at a state where discrete states have changed.
   void begin_at(const State& state);
 
@@ -103,6 +106,10 @@ class ZeroWatch {
   void leave(std::size_t f, double from);
   /// As `cross` where it has one sign at both rows, and the parabola through three rows has another in between.
   void cross_there_and_back(const Course& course, std::size_t f, std::size_t interval);
+  /// Whether a function jumps past its value at the time of the state that `land` looks at.
+  /// \param length of the step that has come there [s]
+  /// \param instant from the time of `just_before_` to that of `landed_` [s]
+  [[nodiscard]] bool has_jumped(std::size_t function, double length, double instant) const;
   /// Whether a function that has this sign now is to be noticed.
   [[nodiscard]] bool noticed(std::size_t function, int direction) const;
   [[nodiscard]] bool looks(std::size_t function, std::span<const double> y) const;
@@ -116,9 +123,10 @@ class ZeroWatch {
   std::vector<int> before_;
   std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;
-  std::array<Row, 3> rows_;     ///< those looked at last, in the order of their times
-  std::vector<double> landed_;  ///< values at the state that `land` has seen
-  std::vector<double> unsure_;  ///< how far from zero these may be of functions that passed there; else below zero
+  std::array<Row, 3> rows_;          ///< those looked at last, in the order of their times
+  std::vector<double> landed_;       ///< values at the state that `land` has seen
+  std::vector<double> just_before_;  ///< the same at the time before, to rounding
+  std::vector<double> unsure_;       ///< how far from zero these may be of functions that passed there; else below zero
   std::vector<double> near_;    ///< the same of those that begin the step so near: their signs are seen a little later
   std::vector<int> end_signs_;  ///< at the end of the step
   std::vector<Zero> zeros_;

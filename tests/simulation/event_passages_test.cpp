@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "acted_run.hpp"
 
@@ -146,6 +148,84 @@ TEST(EventPassages, of_a_turning_place_switch_its_motor_on_and_off_in_turn) {
       // Within a passage torque is constant, which each step integrates exactly; instants are known to rounding.
       EXPECT_NEAR(run.rate("axle"), rate, 1e-9 * rate) << integrator << motor.rate;
     }
+  }
+}
+
+/// 2 kg that 2 N push from rest; events follow.
+std::string pushed_mass(const std::string& events) {
+  return R"(format: withy/1
+time: {end: 3, output: 3}
+bodies: {m: {type: rigid, mass: 2}}
+hinges: {x: {type: prismatic, axis: [1, 0, 0], parent: world, child: m}}
+outputs: {f: {type: frame, of: m}}
+loads: {push: {type: hinge-effort, hinge: x, value: 2}, idle: {type: hinge-effort, hinge: x, value: 0}}
+events:
+)" + events;
+}
+
+/// "r up at 1": in the order in which they are told; times to 1e-9.
+std::vector<std::string> told(const RunSummary& summary) {
+  std::vector<std::string> lines;
+  for (const EventTime& e : summary.events)
+    lines.push_back(fmt::format("{}{} at {:.9g}", e.name,
+                                e.direction == 0  ? ""
+                                : e.direction > 0 ? " up"
+                                                  : " down",
+                                e.time));
+  return lines;
+}
+
+// Each time the mass has 1 m/s, after 1 s, the lock takes it in no time.
+TEST(EventPassages, that_another_event_makes_at_the_same_instant_are_told_and_acted_on) {
+  const std::string lock = R"(  lk: {signal: f.vx, value: 1, direction: up, repeat: true, do: {lock: x}}
+  ul: {after: lk, delay: 0.3, repeat: true, do: {unlock: x}}
+)";
+  // What reports, by an output or by the coordinate, and what acts on something else.
+  for (const std::string watch : {"{signal: f.vx, value: 1}", "{hinge: x, of: rate, value: 1}",
+                                  "{signal: f.vx, value: 1, repeat: true, do: {set: loads.idle.value=0}}"}) {
+    const ActedRun run(pushed_mass("  r: " + watch + "\n" + lock));
+    EXPECT_EQ(told(run.summary),
+              (std::vector<std::string>{"r up at 1", "lk up at 1", "r down at 1", "ul at 1.3", "r up at 2.3",
+                                        "lk up at 2.3", "r down at 2.3", "ul at 2.6"}))
+        << watch;
+  }
+}
+
+// What looks for the way down alone has passed on the way up, whatever side rounding leaves the step's end on.
+TEST(EventPassages, back_of_a_value_that_nobody_looks_for_on_the_way_there_are_seen) {
+  const ActedRun run(
+      pushed_mass(R"(  r: {signal: f.vx, value: 1, direction: down, repeat: true, do: {set: loads.idle.value=0}}
+  lk: {signal: f.vx, value: 1, direction: up, repeat: true, do: {lock: x}}
+  ul: {after: lk, delay: 0.3, repeat: true, do: {unlock: x}}
+)"));
+  EXPECT_EQ(told(run.summary), (std::vector<std::string>{"lk up at 1", "r down at 1", "ul at 1.3", "lk up at 2.3",
+                                                         "r down at 2.3", "ul at 2.6"}));
+}
+
+TEST(EventPassages, that_an_event_makes_by_its_own_action_are_none_that_it_waits_for) {
+  const ActedRun run(pushed_mass(R"(  lk: {signal: f.vx, value: 1, repeat: true, do: {lock: x}}
+  ul: {after: lk, delay: 0.3, repeat: true, do: {unlock: x}}
+)"));
+  EXPECT_EQ(told(run.summary), (std::vector<std::string>{"lk up at 1", "ul at 1.3", "lk up at 2.3", "ul at 2.6"}));
+}
+
+// The push jumps from 0 to 10 N at 1 s, and an event takes it away at the same instant.
+TEST(EventPassages, there_and_back_at_the_instant_of_a_jump_are_both_at_that_instant) {
+  for (const std::string integrator : {"{name: rk4, step: 0.5}", "{name: dopri5}", "{name: radau}"}) {
+    const ActedRun run("format: withy/1\nintegrator: " + integrator + R"(
+time: {end: 3, output: 3}
+bodies: {m: {type: rigid, mass: 2}}
+hinges: {x: {type: prismatic, axis: [1, 0, 0], parent: world, child: m}}
+initial: {hinges: {x: {rate: [1]}}}
+loads: {push: {type: hinge-effort, hinge: x, law: steps, table: [[0, 0], [1, 10], [2, 0]]}}
+outputs: {imu: {type: accelerometer, of: m}}
+events:
+  dn: {signal: imu.x, value: 2}
+  cut: {at: 1, do: {switch_off: push}}
+)");
+    ASSERT_EQ(told(run.summary), (std::vector<std::string>{"dn up at 1", "cut at 1", "dn down at 1"})) << integrator;
+    for (const EventTime& e : run.summary.events) EXPECT_EQ(e.time, 1) << integrator << e.name;
+    EXPECT_NEAR(run.rate("x"), 1, 1e-12) << integrator;
   }
 }
 
