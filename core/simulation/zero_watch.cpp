@@ -233,6 +233,8 @@ double ZeroWatch::zero_between(const Course& course, std::size_t f, double a, do
 }
 
 void ZeroWatch::cross(const Course& course, std::size_t f, const Row& begin, const Row& end) {
+  if (std::abs(end.values[f]) <= near_[f]) return;  // its sign is rounding's still
+  near_[f] = -1;
   const int now = sign(end.values[f]);
   if (now == 0 || now == before_[f]) return;
   // Else it began on its zero.
@@ -245,6 +247,7 @@ void ZeroWatch::leave(std::size_t f, double from) {
   const double value = rows_.back().values[f];
   const int now = sign(value);
   if (std::abs(value) <= near_[f] || now == 0) return;
+  near_[f] = -1;
   if (before_[f] * now < 0 && noticed(f, now)) zeros_.push_back({from, f, now});
   before_[f] = now;
 }
@@ -252,7 +255,7 @@ void ZeroWatch::leave(std::size_t f, double from) {
 void ZeroWatch::cross_there_and_back(const Course& course, std::size_t f, std::size_t interval) {
   const Row &a = rows_[interval], &b = rows_[interval + 1];
   const int outside = sign(a.values[f]);
-  if (outside == 0 || sign(b.values[f]) != outside || before_[f] == 0) return;
+  if (near_[f] >= 0 || outside == 0 || sign(b.values[f]) != outside || before_[f] == 0) return;
   std::array<double, 3> t{}, x{};
   for (std::size_t k = 0; k < 3; ++k) t[k] = rows_[k].time, x[k] = rows_[k].values[f];
   constexpr int most_looks = 3;
@@ -327,6 +330,19 @@ void ZeroWatch::look_through(const Course& course, std::size_t first, std::size_
   }
 }
 
+/// The first steps after an event may be far shorter than rounding is of what has passed there.
+void ZeroWatch::doubt_what_stays_near(const State& after) {
+  const bool any = std::any_of(unsure_.begin(), unsure_.end(), [](double unsure) { return unsure >= 0; });
+  if (any) evaluate(after.time, after.y, values_);
+  for (std::size_t f = 0; f < unsure_.size(); ++f) {
+    if (unsure_[f] < 0) continue;
+    if (std::abs(values_[f]) <= unsure_[f])
+      landed_[f] = 0;
+    else
+      unsure_[f] = -1;
+  }
+}
+
 const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, const State& before,
                                                     const std::function<bool(const Zero&)>& cuts) {
   // A function may pass zero and come back within a step: between looks a parabola through three of them tells.
@@ -334,7 +350,7 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, cons
   const State& after = stepper.state();
   zeros_.clear();
   for (std::size_t f = 0; f < signs_.size(); ++f) near_[f] = signs_[f] == 0 ? std::max(unsure_[f], 0.0) : unsure_[f];
-  std::fill(unsure_.begin(), unsure_.end(), -1);
+  doubt_what_stays_near(after);
   before_ = start_signs_ = signs_;
   // The kinks are those of coordinates, which a parabola follows over a step.
   const std::size_t first_kink = switches_ + events_.size();

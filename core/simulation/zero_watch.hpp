@@ -99,6 +99,8 @@ class ZeroWatch {
   void take(const Course& course, double t);
   /// The end of the bracket [a, b] in which a function passes zero, where it has the sign it has at b.
   [[nodiscard]] double zero_between(const Course& course, std::size_t f, double a, double b, double value_at_b);
+  /// Which functions are not known to have left their zeros at the end of a step either.
+  void doubt_what_stays_near(const State& after);
   /// Takes up the zeros of a function between a row and the next.
   void cross(const Course& course, std::size_t f, const Row& begin, const Row& end);
   /// Takes the sign, at the last row, of a function that began the step near its zero, and the zero that it has passed
