@@ -104,8 +104,9 @@ SensedDerivatives sensed_derivatives(SmallMotions& motions) {
   d.by_state.resize(rows, size);
   Eigen::MatrixXd change(rows, size);
   for (Eigen::Index i = 0; i < size; ++i) {
-    const Differenced column = adaptive_difference(
-        [&](double h) -> Eigen::VectorXd { return motions.sensed(motions.displaced(i, h)); }, motions.step(i));
+    const Differenced column =
+        adaptive_difference([&](double h) -> Eigen::VectorXd { return motions.sensed(motions.displaced(i, h)); },
+                            motions.step(i), motions.place(i));
     d.by_state.col(i) = column.slope;
     // Both in what the state changes over its step, so that states of different units compare.
     change.col(i) = column.change * motions.step(i);

@@ -141,6 +141,14 @@ State SmallMotions::displaced(Eigen::Index i, double h) const {
 
 double SmallMotions::step(Eigen::Index i) const { return steps_[static_cast<std::size_t>(i)]; }
 
+double SmallMotions::place(Eigen::Index i) const {
+  const State moved = displaced(i, 1);
+  double greatest = 0;
+  for (std::size_t k = 0; k < moved.y.size(); ++k)
+    if (moved.y[k] != state_.y[k]) greatest = std::max(greatest, std::abs(state_.y[k]));
+  return greatest;
+}
+
 double SmallMotions::step(const Eigen::VectorXd& efforts) const {
   const double moved = (by_effort_ * efforts).cwiseAbs().maxCoeff();
   return moved > 0 ? 1 / moved : 1.0;

@@ -43,6 +43,8 @@ class SmallMotions {
   /// A step of z_i over which anything changes little: 0.01 rad, a hundredth or (modes) a thousandth of the longest
   /// body; of a load's state a hundredth of it, or of one.
   [[nodiscard]] double step(Eigen::Index i) const;
+  /// The greatest number of the state that z_i is added to.
+  [[nodiscard]] double place(Eigen::Index i) const;
   /// A step of what makes these efforts over which anything changes little.
   [[nodiscard]] double step(const Eigen::VectorXd& efforts) const;
   /// The state with efforts [N m, N] on all speeds.

@@ -67,7 +67,7 @@ void Dynamics::differences(std::span<const double> along_states, std::span<const
     for (std::size_t c = 0; c < columns.size(); ++c) numbers[static_cast<Eigen::Index>(c)] = row[columns[c]];
     return numbers;
   };
-  const Eigen::VectorXd found = refined_difference(at, h);
+  const Eigen::VectorXd found = refined_difference(at, h, place / longest);
   for (std::size_t c = 0; c < columns.size(); ++c)
     if (!std::isfinite(found[static_cast<Eigen::Index>(c)]))
       throw Discarded("t = " + brief(state_.time) + " s: output '" + table_.columns()[columns[c]].name +

@@ -50,13 +50,15 @@ Eigen::ArrayXX<bool> has_treads(Function&& f, double wide, double fine, const Ma
   return others <= static_cast<int>(places.size()) - fewest_same && risen >= fewest_risen;
 }
 
+/// Of how stairs climb, what steps of different lengths may make of it: twenty treads to a step.
+inline constexpr double same_climb = 0.05;
+
 /// Where treads are those of stairs: they climb, and long steps see it alike whatever their length. What repeats is
 /// none, as a phase that is wrapped: within a pitch it climbs faster than in the whole, and of the whole long steps see
 /// what their length makes of it.
 template <class Function, class Matrix>
 Eigen::ArrayXX<bool> in_stairs(Function&& f, double wide, double fine, const Matrix& wide_slope,
                                const Matrix& fine_slope) {
-  constexpr double same_climb = 0.05;  // twenty treads to a step
   const Matrix shorter = central_difference(f, golden_section * wide);
   const Eigen::ArrayXXd apart = (wide_slope - fine_slope).array().abs();
   const Eigen::ArrayXX<bool> climbs =
@@ -96,7 +98,10 @@ class Refinement {
       settled_(i) = left <= agreed * std::abs(finer(i)) + least && !(finer(i) == 0 && left == 0 && acts_beside(i));
       if (settled_(i) && is_new(finer, i)) {
         if (stairs.size() == 0) stairs = in_stairs(f_, wide_, h_, first_, finer);
-        if (stairs(i)) continue;  // what longer steps have told stands
+        if (stairs(i)) {  // what longer steps have told stands
+          best_.change(i) = std::min(best_.change(i), same_climb * std::abs(first_(i) - finer(i)));
+          continue;
+        }
       }
       if (!settled_(i) && !(left < best_.change(i))) continue;
       best_.slope(i) = before_(i);
