@@ -62,6 +62,10 @@ struct Simulation::Parts {
     events.clear();
     for (const EventTime& e : session.events()) events.push_back({e.name, e.time, e.direction});
     if (end.status == RunStatus::completed) return end.reached;
+    refuse(end);
+  }
+
+  [[noreturn]] void refuse(const SessionEnd& end) const {
     throw SimulationStopped(std::string(withy::name(end.status)), end.message, session.state().time);
   }
 
@@ -106,6 +110,7 @@ bool Simulation::advance_to(double t) { return parts_->advance(t, true); }
 const std::vector<Event>& Simulation::events() const { return parts_->events; }
 
 Snapshot Simulation::snapshot() const {
+  if (const auto& end = parts_->session.ended()) parts_->refuse(*end);
   Snapshot snapshot;
   snapshot.parts_ = std::make_shared<const Snapshot::Parts>(
       Snapshot::Parts{parts_->session.snapshot(), parts_->origin(parts_->prepared->scene)});

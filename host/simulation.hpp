@@ -56,7 +56,8 @@ class Simulation {
   [[nodiscard]] std::size_t input_index(std::string_view name) const;
   [[nodiscard]] std::size_t output_index(std::string_view name) const;
 
-  /// The value set last, or else the value now. An index past the end is std::out_of_range.
+  /// The value now or, from `set_input` to the next step, the value set: with `hold: linear`, where `advance_to` has
+  /// halted inside a step, how far the line has come. An index past the end is std::out_of_range.
   [[nodiscard]] double input(std::size_t index) const;
   [[nodiscard]] double input(std::string_view name) const;
   /// Acts in the steps from now on: at once, or with `hold: linear` reached at the end of the next step.
@@ -70,15 +71,17 @@ class Simulation {
   [[nodiscard]] std::span<const double> output_values() const;
 
   /// Integrates to the time t [s] and lands on it bit by bit; events on the way are passed, those that stop a run too.
-  /// \throws SimulationStopped where it cannot go on, or is interrupted: it may then go on. std::invalid_argument where
-  /// t lies before the present time; SceneError where the integrator's plugin fails, after which nothing can be
-  /// trusted.
+  /// \throws SimulationStopped where it cannot go on, and again with the same reason until `restore`, or is
+  /// interrupted: it may then go on. std::invalid_argument where t lies before the present time; SceneError where the
+  /// integrator's plugin fails, after which nothing can be trusted.
   void step(double t);
-  /// The same, but halts where an event that stops a run comes first. \returns whether t is reached
+  /// The same, but halts where an event that stops a run comes first; at one that does nothing else each time it
+  /// happens. \returns whether t is reached
   bool advance_to(double t);
   /// The events of the last step, in their order.
   [[nodiscard]] const std::vector<Event>& events() const;
 
+  /// \throws SimulationStopped, as `step` did, where it cannot go on: nothing goes on from there.
   [[nodiscard]] Snapshot snapshot() const;
   /// Goes on from there bit by bit as the simulation did that made it, with the same inputs and times. A simulation
   /// that was stopped goes on too. \throws std::invalid_argument where it is of another scene: one whose values or

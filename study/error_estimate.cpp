@@ -133,49 +133,66 @@ class PairedRuns {
   [[nodiscard]] bool comes_to_the_end(ErrorEstimate& estimate) {
     if (estimate.distances.until < estimate.end || unbalanced_ > another_motion) return false;
     const double began = thread_cpu_seconds();
-    OutputReader reader(outputs_, *scene_.model, used_);
-    Distances apart = outputs_.none();
-    outputs_.raise(last_, reader.read(summary_.final), apart);
+    const Off off = off_the_run();
     const Distances sizes = scales(outputs_, ranges_, energy_);
-    const Distances along = apart_along(reader, apart);
-    estimate.off = relative_error(along, sizes);
+    estimate.off = relative_error(off.greatest, sizes);
     estimate.cpu_seconds += thread_cpu_seconds() - began;
-    note_bounds(estimate, sizes, apart, along);
+    note_bounds(estimate, sizes, off);
     estimate.distances = named(outputs_, greatest_, estimate.distances.until);
-    return relative_error(apart, sizes) < another_motion;
+    return relative_error(off.at_end, sizes) < another_motion;
   }
 
  private:
+  /// How far the coarse run is from the run, of each output.
+  struct Off {
+    Distances at_end;
+    Distances greatest;  ///< there and wherever else it is looked at
+    Distances mean;      ///< root of the mean square wherever it is looked at before the end
+  };
   /// The greatest part of its scale that the energy, or where they are conserved a momentum, is off by.
   [[nodiscard]] double unbalanced(const Drifts& drifts) const {
     return std::max(drifts.energy, summary_.momentum.conserved ? std::max(drifts.linear, drifts.angular) : 0.0);
   }
   /// Outputs of which the coarse runs tell no more than a bound, and the bounds.
-  /// \param apart from the run at the end; along: wherever it is looked at
-  void note_bounds(ErrorEstimate& estimate, const Distances& sizes, const Distances& apart, const Distances& along) {
+  void note_bounds(ErrorEstimate& estimate, const Distances& sizes, const Off& off) {
     std::set<std::string> told;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       const bool tells =
-          greatest_[i] >= std::max({resolved * sizes[i], beyond_its_own * along[i], unbalanced_ * sizes[i]});
+          greatest_[i] >= std::max({resolved * sizes[i], beyond_its_own * off.greatest[i], unbalanced_ * sizes[i]});
       if (tells) told.insert(outputs_.list()[i].name);
       if (!tells && greatest_[i] > 0) estimate.at_most.insert(outputs_.list()[i].name);
     }
     for (const std::string& name : told) estimate.at_most.erase(name);
-    // Coarse steps damp vibrations in both models, and what these differ by: no more than the run still has of them,
-    // and where the difference is no small part of a range, than what it had.
-    for (std::size_t i = 0; i < sizes.size(); ++i)
-      if (estimate.at_most.count(outputs_.list()[i].name) > 0)
-        greatest_[i] = std::max(greatest_[i], greatest_[i] >= resolved * sizes[i] ? along[i] : apart[i]);
+    // Coarse steps damp vibrations in both models, and what these differ by beside what is seen: by no more than the
+    // run still has of them, and where the difference is no small part of a range, than what it had. At one instant, as
+    // the end is, a vibration may pass through nothing. Of the two each has its own phase.
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      const double unseen =
+          greatest_[i] >= resolved * sizes[i] ? off.greatest[i] : std::max(off.at_end[i], off.mean[i]);
+      if (estimate.at_most.count(outputs_.list()[i].name) > 0) greatest_[i] = std::hypot(greatest_[i], unseen);
+    }
   }
 
-  /// How far the coarse run is from the run wherever it is looked at.
-  /// \param at_end the same at the end
-  [[nodiscard]] Distances apart_along(OutputReader& reader, Distances at_end) const {
+  [[nodiscard]] Off off_the_run() const {
+    OutputReader reader(outputs_, *scene_.model, used_);
+    Off off{outputs_.none(), {}, outputs_.none()};
+    outputs_.raise(last_, reader.read(summary_.final), off.at_end);
+    off.greatest = off.at_end;
     const std::vector<State>& states = summary_.validity.along;
-    for (std::size_t i = look_every; i < states.size(); i += look_every)
-      if (const std::optional<State> there = track_.at(states[i].time))
-        outputs_.raise(reader.read(*there), reader.read(states[i]), at_end);
-    return at_end;
+    double looks = 0;
+    for (std::size_t i = look_every; i < states.size(); i += look_every) {
+      const std::optional<State> there = track_.at(states[i].time);
+      if (!there) continue;
+      Distances apart = outputs_.none();
+      outputs_.raise(reader.read(*there), reader.read(states[i]), apart);
+      for (std::size_t k = 0; k < apart.size(); ++k) {
+        off.greatest[k] = std::max(off.greatest[k], apart[k]);
+        off.mean[k] += apart[k] * apart[k];
+      }
+      ++looks;
+    }
+    for (double& square : off.mean) square = looks > 0 ? std::sqrt(square / looks) : 0;
+    return off;
   }
 
   const Scene& scene_;

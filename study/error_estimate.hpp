@@ -27,7 +27,8 @@ struct ErrorEstimate {
   /// Of the equations of the run along the coarse one. What a hundred times the tolerance does not change is no error
   /// of the integration but what the formulation leaves out.
   Drifts drifts = {};
-  /// Names of outputs whose error is too small for the coarse runs to tell: it is no more than what they differ by.
+  /// Names of outputs whose error is too small for the coarse runs to tell: it is roughly no more than the distance, of
+  /// what they differ by and of what they are off the run.
   std::set<std::string> at_most = {};
   /// The greatest part of an output's range that the coarse run is off the run itself; zero of an estimate at any
   /// price, whose runs are as exact as it asks.

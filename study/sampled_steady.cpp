@@ -23,6 +23,8 @@ constexpr double converged_change = 1e-11;
 /// Below this share of the greatest singular value the equations count as singular.
 constexpr double singular_share = 1e-12;
 constexpr double shortest_part = 1e-4;
+/// A sample that adds to what is held keeps it: a derivative this near to one is one, and rounding holds nothing.
+constexpr double kept_exactly = 1e-12;
 
 /// A state with the equations of a change (δ of the free speeds, continuous states, what is held) that balances it.
 class Balance {
@@ -40,7 +42,8 @@ class Balance {
     rows.topLeftCorner(n, n) = held.A;
     rows.topRightCorner(n, d) = held.by_held;
     rows.bottomRows(d) = sampled_.renewal(held).bottomRows(d);
-    rows.bottomRightCorner(d, d) -= Eigen::MatrixXd::Identity(d, d);
+    for (double& kept : rows.bottomRightCorner(d, d).diagonal())
+      kept = std::abs(kept - 1) <= kept_exactly ? 0.0 : kept - 1;
     J_.resize(all, all);
     J_.leftCols(m_) = rows.bottomRows(all).leftCols(m_);
     J_.rightCols(states_ + d) = rows.bottomRows(all).rightCols(states_ + d);

@@ -111,7 +111,7 @@ class Pushes {
       return all;
     });
   }
-  /// What a displacement makes of all forces on what is free, were none to make up for another.
+  /// What a displacement or its rate makes of all forces on what is free, were none to make up for another.
   Eigen::VectorXd all_that_acts() {
     const Instant& start = instants_.front();
     const Tangents now =
@@ -121,7 +121,8 @@ class Pushes {
       const std::size_t rate = c_.layout().positions + static_cast<std::size_t>(free_[static_cast<std::size_t>(i)]);
       by[i] = std::abs(start.displaced.y[rate] - start.here.y[rate]);
     }
-    return (now.by_position(free_, free_).cwiseAbs() + now.by_speed(free_, free_).cwiseAbs()) * by;
+    const auto made_by = [&](const Eigen::MatrixXd& m) -> Eigen::VectorXd { return m(free_, free_).cwiseAbs() * by; };
+    return made_by(now.by_position).cwiseMax(made_by(now.by_speed));
   }
 
   const Configuration& c_;

@@ -26,7 +26,7 @@ extern "C" {
 /** How a call ended; the first four as the exit status of the program withy. */
 typedef enum withy_status {
   WITHY_OK = 0,
-  WITHY_STOPPED = 1,     /**< the simulation cannot go on; it stands at its last accepted state */
+  WITHY_STOPPED = 1,     /**< it cannot go on, and stands at its last accepted state; of equations: no derivatives */
   WITHY_BAD_INPUT = 2,   /**< the scene, a value set in it, or a choice cannot be */
   WITHY_ENVIRONMENT = 3, /**< a plugin is refused, a file cannot be read, memory has run out */
   WITHY_BAD_USE = 4      /**< the call itself: a handle or pointer that is none, a name, index, size or number */
@@ -107,12 +107,15 @@ WITHY_API withy_status withy_simulation_input(withy_simulation* simulation, size
 WITHY_API withy_status withy_simulation_output(withy_simulation* simulation, size_t index, double* value);
 /** All outputs. \param count size of the array, withy_simulation_outputs() */
 WITHY_API withy_status withy_simulation_output_values(withy_simulation* simulation, double* values, size_t count);
-/** Integrates to the time t [s] and lands on it exactly. WITHY_STOPPED: it stands at its last accepted state. */
+/** Integrates to the time t [s] and lands on it exactly. WITHY_STOPPED: it stands at its last accepted state, and each
+    step gives the same until it is restored. */
 WITHY_API withy_status withy_simulation_step(withy_simulation* simulation, double t);
-/** The same, but halts at an event with `stop: true`. \param reached whether t is; may be null */
+/** The same, but halts at an event with `stop: true`, each time at one that does nothing else.
+    \param reached whether t is; may be null */
 WITHY_API withy_status withy_simulation_advance_to(withy_simulation* simulation, double t, int* reached);
 /** The present state as JSON; null with an error where that cannot be had. */
 WITHY_API const char* withy_simulation_state(withy_simulation* simulation);
+/** WITHY_STOPPED: it cannot go on, and nothing would from there. */
 WITHY_API withy_status withy_simulation_snapshot(withy_simulation* simulation, withy_snapshot** snapshot);
 WITHY_API withy_status withy_simulation_restore(withy_simulation* simulation, const withy_snapshot* snapshot);
 

@@ -242,7 +242,7 @@ void bind_simulation(py::module_& m) {
           "step", [](S& s, double t) { s.call([t](Simulation& own) { own.step(t); }); }, py::arg("t"),
           "step(t) -> None\n\nIntegrates to the time t [s] and lands on it exactly, passing events on the way.\n\n"
           "Raises:\n    SimulationStopped: with the physical reason where it cannot go on; it stands at its last "
-          "accepted state.\n"
+          "accepted state, and each step raises the same until restore().\n"
           "    ValueError: where t lies before the present time or is not finite.")
       .def(
           "advance_to", [](S& s, double t) { return s.call([t](Simulation& own) { return own.advance_to(t); }); },
@@ -251,7 +251,9 @@ void bind_simulation(py::module_& m) {
           "whether t [s] is reached.\n\nRaises:\n    SimulationStopped, ValueError: as step() does.")
       .def(
           "snapshot", [](S& s) { return s.call([](Simulation& own) { return own.snapshot(); }); },
-          "snapshot() -> Snapshot\n\nWhat restore() goes back to.")
+          "snapshot() -> Snapshot\n\nWhat restore() goes back to.\n\nRaises:\n    SimulationStopped: as step() did, "
+          "where it "
+          "cannot go on: nothing goes on from there.")
       .def(
           "restore", [](S& s, const Snapshot& to) { s.call([&to](Simulation& own) { own.restore(to); }); },
           py::arg("snapshot"),

@@ -101,8 +101,8 @@ SessionEnd Session::advance(double t, bool halt) {
   if (t < state().time)
     throw std::invalid_argument("the time " + brief(t) + " s lies before the present one, " + brief(state().time) +
                                 " s");
-  if (ended_) throw std::logic_error("the simulation has come to its end; restore a snapshot or begin anew");
   events_.clear();
+  if (ended_) return *ended_;
   halts_ = halt;
   if (t == state().time) return {RunStatus::completed, {}, true};
   apply_settings(t);
@@ -135,13 +135,13 @@ SessionEnd Session::go(double t) {
 
 SessionEnd Session::bad_end(Stop stop) {
   if (stop.status == RunStatus::interrupted) return {stop.status, "interrupted", false};
-  ended_ = true;
   const bool examined = model_.layout().speeds <= largest_examined;
   MassMatrixHistory history =
       examined ? examine(equations_, initial_, state(), monitor_.sign_change()) : MassMatrixHistory{};
   if (examined && options_.own_energy) compare_inertia(history);
   std::string message = explain(stop, state().time, examined ? &history : nullptr, model_.layout());
-  return {stop.status, std::move(message), false};
+  ended_ = {stop.status, std::move(message), false};
+  return *ended_;
 }
 
 bool Session::before_step(const Stepper& stepper) {
@@ -207,7 +207,7 @@ void Session::go_on_from(const Checkpoint& snapshot) {
 }
 
 void Session::restore(const Checkpoint& snapshot) {
-  const bool ended = std::exchange(ended_, false);
+  const std::optional<SessionEnd> ended = std::exchange(ended_, std::nullopt);
   const Checkpoint before = this->snapshot();
   try {
     go_on_from(snapshot);

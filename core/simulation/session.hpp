@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,9 +49,11 @@ class Session final : private SteppingObserver {
   /// Integrates to the time t [s] and lands on it bit by bit; nothing jumps there because of that. Ends before it where
   /// it cannot go on, where it is interrupted, or with `halt` at an event that stops runs. The state is then the last
   /// accepted one.
-  /// \throws std::invalid_argument where t lies before the present time or is not finite; std::logic_error where the
-  /// simulation has come to a bad end already.
+  /// After a bad end it stays there and gives that end again.
+  /// \throws std::invalid_argument where t lies before the present time or is not finite.
   SessionEnd advance(double t, bool halt);
+  /// The bad end that it has come to; nothing where it may go on.
+  [[nodiscard]] const std::optional<SessionEnd>& ended() const { return ended_; }
   /// The events of the last `advance`, in their order.
   [[nodiscard]] const std::vector<EventTime>& events() const { return events_; }
 
@@ -58,6 +61,7 @@ class Session final : private SteppingObserver {
   void begin_step_anew() { loop_.replace(state()); }
 
   /// Everything that the steps to come depend on. Another session of the same scene may restore it.
+  /// \throws std::logic_error after a bad end
   [[nodiscard]] Checkpoint snapshot();
   /// Goes on from a snapshot, bit by bit as the simulation did from there with the same inputs.
   /// \throws std::invalid_argument where it is not one of such a simulation; this one is then as it was.
@@ -101,7 +105,7 @@ class Session final : private SteppingObserver {
   std::vector<EventTime> events_;
   Stop stop_;
   bool halts_ = false;  ///< events that stop runs halt the present advance
-  bool ended_ = false;
+  std::optional<SessionEnd> ended_;
 };
 
 }  // namespace withy

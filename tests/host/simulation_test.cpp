@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <optional>
 #include <thread>
 
@@ -258,6 +259,35 @@ TEST(HostedSimulation, passes_events_or_halts_at_them) {
   EXPECT_NEAR(halting.output("axle"), passing.output("axle"), 1e-5);
 }
 
+// A spring of 4 N m/rad on 1 kg m^2 passes zero each half period, at pi/4, 3 pi/4, 5 pi/4.
+TEST(HostedSimulation, halts_each_time_at_an_event_that_only_stops_and_once_where_it_does_something) {
+  const auto halts = [](const std::string& more) {
+    Simulation simulation(Scene::parse(library(), R"(
+format: withy/1
+time: {end: 5}
+integrator: {name: dop853, rtol: 1e-10, atol: 1e-10}
+bodies: {table: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+loads:
+  spring: {type: hinge-spring, hinge: axle, stiffness: 4}
+  idle: {type: expression, hinge: axle, value: 0 * t}
+events: {middle: {hinge: axle, value: 0, stop: true)" +
+                                                      more + R"(}}
+initial: {hinges: {axle: {position: 0.1}}}
+)"));
+    std::vector<double> times;
+    while (!simulation.advance_to(4.5)) times.push_back(simulation.time());
+    return times;
+  };
+  const double quarter = std::numbers::pi / 4;
+  const auto near = [](double t) { return testing::DoubleNear(t, 1e-8); };
+  const auto all = testing::ElementsAre(near(quarter), near(3 * quarter), near(5 * quarter));
+  EXPECT_THAT(halts(""), all);
+  EXPECT_THAT(halts(", repeat: true"), all);
+  EXPECT_THAT(halts(", do: {switch_off: idle}"), testing::ElementsAre(near(quarter)));
+  EXPECT_THAT(halts(", do: {switch_off: idle}, repeat: true"), all);
+}
+
 TEST(HostedSimulation, that_cannot_go_on_says_why_and_may_go_back) {
   Scene scene = Scene::read(library(), WITHY_SOURCES "/scenes/two-link-slew.yaml");
   Simulation simulation(scene.set("loads.slew.time_scale", 1.2).formulation("consistent"));
@@ -272,7 +302,22 @@ TEST(HostedSimulation, that_cannot_go_on_says_why_and_may_go_back) {
     EXPECT_EQ(e.time(), simulation.time());
     EXPECT_LT(e.time(), 3);
   }
-  EXPECT_THROW(simulation.step(3), std::logic_error);
+  const double stands = simulation.time();
+  const auto stopped_again = [&](auto&& act) {
+    try {
+      act();
+      return std::string("not stopped");
+    } catch (const host::SimulationStopped& e) {
+      EXPECT_EQ(e.time(), stands);
+      EXPECT_THAT(e.what(), HasSubstr("The mass matrix of this formulation became singular"));
+      return e.status();
+    }
+  };
+  EXPECT_EQ(stopped_again([&] { simulation.step(3); }), "singular");
+  EXPECT_EQ(stopped_again([&] { simulation.advance_to(stands); }), "singular");
+  EXPECT_EQ(stopped_again([&] { static_cast<void>(simulation.snapshot()); }), "singular");
+  EXPECT_THROW(simulation.step(0), std::invalid_argument);
+  EXPECT_EQ(simulation.time(), stands);
   simulation.restore(good);
   simulation.step(0.02);
   EXPECT_EQ(simulation.time(), 0.02);
