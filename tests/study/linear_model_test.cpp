@@ -245,6 +245,25 @@ outputs: {cc: {type: control, of: c}, dd: {type: control, of: d}}
               -response(c, {"h", "h.0", {}, {}, 20, {}}).static_gain, 1e-10);
 }
 
+/// At 1e8 m a coordinate has steps of 1.5e-8 m.
+TEST(LinearModel, OfSensorsFarFromTheOriginIsThatOfSensorsNearIt) {
+  for (const char* place : {"0.5", "1e8", "1e11"}) {
+    const LinearModel m = linear_model(at_start(scene_of(R"(
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+loads: {k: {type: hinge-spring, hinge: slide, stiffness: 200, free_position: )" +
+                                                         std::string(place) + R"(}}
+outputs: {d: {type: distance, to: block}, f: {type: frame, of: block}}
+initial: {hinges: {slide: {position: [)" + place + "]}}}\n")),
+                                       {{"slide"}, {"d", "f.x", "f.ax"}});
+    const auto of_place = [&](const std::string& name) { return m.system.C(find(m.outputs, name), 0); };
+    EXPECT_NEAR(of_place("d"), 1, 1e-9) << place;
+    EXPECT_NEAR(of_place("f.x"), 1, 1e-9) << place;
+    EXPECT_NEAR(of_place("f.ax"), -100, 1e-7) << place;
+    EXPECT_EQ(m.output_derivatives.find("inf"), std::string::npos) << m.output_derivatives;
+  }
+}
+
 /// With one rate of a hinge held, what a sampled load measures of accelerations would be that of a body free in it.
 TEST(LinearModel, OfASampledAccelerationOnAHingeThatIsHeldInPartIsRefused) {
   const auto scene = [](const std::string& measured) {
