@@ -143,11 +143,10 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& before, const S
     signs_[f] = direction;
     values_[f] = 0;  // up to rounding of either sign
   };
-  for (const Zero& zero : known) has_passed(zero.function, zero.direction);
   // What passes here in the direction that nobody notices has passed too, as it is seen beyond this state.
   for (std::size_t f = 0; f < signs_.size(); ++f)
-    if (values_[f] != 0 && is_near(f) && signs_[f] * before_[f] < 0 && !noticed(f, before_[f]))
-      has_passed(f, before_[f]);
+    if (is_near(f) && signs_[f] * before_[f] < 0 && !noticed(f, before_[f])) has_passed(f, before_[f]);
+  for (const Zero& zero : known) has_passed(zero.function, zero.direction);
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     const int now = sign(values_[f]);
     if (now == 0) continue;
