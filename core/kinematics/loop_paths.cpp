@@ -1,7 +1,5 @@
 #include "withy/core/kinematics/loop_paths.hpp"
 
-#include <algorithm>
-
 #include "withy/core/sweep/node.hpp"
 
 namespace withy {
@@ -16,29 +14,6 @@ std::vector<FrameIndex> frames_of(const Model& model) {
 }
 
 }  // namespace
-
-// Frames that nothing joins do not count: they are no part of what moves, and reactions that depend on this length, as
-// those of redundant loops do, are the same whatever else a scene watches or loads.
-double length_of_loops(const Model& model) {
-  double size = 0;
-  const auto reach = [&](int body, int frame) {
-    if (body < 0) return;
-    const Frame& f = model.bodies()[static_cast<std::size_t>(body)].frames[static_cast<std::size_t>(frame)];
-    size = std::max(size, (f.section.X + f.pose.p).norm());
-  };
-  for (const BodyNode& body : model.bodies())
-    if (body.body->shape().modes() > 0) size = std::max(size, body.body->shape().length);
-  for (const HingeNode& hinge : model.hinges()) {
-    reach(hinge.parent, hinge.parent_frame);
-    reach(hinge.child, hinge.child_frame);
-    size = std::max(size, hinge.offset.p.norm());
-  }
-  for (const LoopClosure* c : loops_of(model)) {
-    for (const FrameIndex& f : {c->a(), c->b()}) reach(f.body, f.frame);
-    size = std::max(size, c->offset().p.norm());
-  }
-  return size > 0 ? size : 1;
-}
 
 LoopPaths::LoopPaths(const Model& model, Terms terms)
     : model_(model), frames_(frames_of(model)), paths_(model, terms, frames_, true), length_(length_of_loops(model)) {

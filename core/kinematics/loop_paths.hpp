@@ -10,11 +10,6 @@
 
 namespace withy {
 
-/// ℓ [m] of a model's loops, by which rotations count as gaps: the length of the longest flexible body, or where that
-/// is more the greatest distance from its body's root of a frame that a hinge or a constraint joins, or of a hinge or
-/// closing frame from what it is placed in; 1 where all are at one place.
-double length_of_loops(const Model& model);
-
 /// With g the gaps of all closing equations, those of directions times `length`, and J u = ġ. Geometry is not truncated
 /// in any formulation: it is that of the bodies' strain kinematics, so that J is the derivative of g and Jᵀ its exact
 /// transpose. With F = (R, p) on a, M on b, r = p_M − p_F and the directions d = R_F a, f = R_M b in world axes,

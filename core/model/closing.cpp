@@ -1,5 +1,6 @@
 #include "withy/core/model/closing.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -118,6 +119,29 @@ bool in_loop(const Model& model, std::size_t body) {
   for (const LoopClosure* loop : loops_of(model))
     if (carries(model, body, loop->a().body) != carries(model, body, loop->b().body)) return true;
   return false;
+}
+
+// Frames that nothing joins do not count: they are no part of what moves, and reactions that depend on this length, as
+// those of redundant loops do, are the same whatever else a scene watches or loads.
+double length_of_loops(const Model& model) {
+  double size = 0;
+  const auto reach = [&](int body, int frame) {
+    if (body < 0) return;
+    const Frame& f = model.bodies()[static_cast<std::size_t>(body)].frames[static_cast<std::size_t>(frame)];
+    size = std::max(size, (f.section.X + f.pose.p).norm());
+  };
+  for (const BodyNode& body : model.bodies())
+    if (body.body->shape().modes() > 0) size = std::max(size, body.body->shape().length);
+  for (const HingeNode& hinge : model.hinges()) {
+    reach(hinge.parent, hinge.parent_frame);
+    reach(hinge.child, hinge.child_frame);
+    size = std::max(size, hinge.offset.p.norm());
+  }
+  for (const LoopClosure* c : loops_of(model)) {
+    for (const FrameIndex& f : {c->a(), c->b()}) reach(f.body, f.frame);
+    size = std::max(size, c->offset().p.norm());
+  }
+  return size > 0 ? size : 1;
 }
 
 void require_tree(const Model& model, const std::string& what) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <span>
 
-#include "withy/core/kinematics/loop_paths.hpp"
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/measured_place.hpp"
