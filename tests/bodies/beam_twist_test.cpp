@@ -126,7 +126,7 @@ TEST(BeamTwist, turns_the_inertia_of_a_rigid_beam_between_all_rows) {
   const auto row = [](double x, double beta) { return Value::list({Value(x), Value(beta)}); };
   const auto body = twisted_beam(Value::list({row(0, 0), row(0.6, turn), row(twisted_length, 0)}), 0, r);
   Matrix3 sum = Matrix3::Zero();
-  for (const Section& s : body->shape().sections) sum += s.inertia;
+  for (const withy::Section& s : body->shape().sections) sum += s.inertia;
   const double central = density * std::pow(twisted_length, 3) / 12, swing = std::sin(2 * turn) / (2 * turn);
   EXPECT_NEAR(sum(1, 1), central + r * twisted_length * (2 + swing), 1e-13);
   EXPECT_NEAR(sum(2, 2), central + r * twisted_length * (2 - swing), 1e-13);
