@@ -45,7 +45,8 @@ Value cut(const Value& table, double x0, double x1) {
   };
   add(last != rows.rend() ? *last : at(x0), 0);
   for (const auto& row : rows) {
-    if (row.front() > x0 + rounding && row.front() < x1 - rounding) add(row, row.front() - x0);
+    const bool inside = row.front() > x0 && row.front() < x1;
+    if (inside && !is_at(x0)(row) && !is_at(x1)(row)) add(row, row.front() - x0);
   }
   add(first != rows.end() ? *first : at(x1), x1 - x0);
   return result;

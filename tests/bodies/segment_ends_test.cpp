@@ -36,11 +36,13 @@ double compliance(const Body& segment) {
   return along_y.dot(segment.shape().stiffness.ldlt().solve(along_y.transpose()));
 }
 
-/// Two rows close together, nearer to the cut than a billionth of a segment, on its outer side, its inner one or both:
-/// of either segment mass ρL/2 and compliance (L/2)³/(3 EI) are those of its own side of the jump.
+/// Two rows close together, about a billionth of a segment from the cut, on its outer side, its inner one or both:
+/// of either segment mass ρL/2 and compliance (L/2)³/(3 EI) are those of its own side of the jump. Rows that are kept
+/// have 3·1e-9 of the compliance between them, where the stiffness is 5.5 times the softer in the mean: 1.4e-8.
 TEST_F(SegmentEnds, a_jump_at_the_end_of_a_segment_is_the_jump_of_both) {
-  for (const auto& [before, after] : {std::pair("0.5", "0.5000000001"), std::pair("0.4999999999", "0.5"),
-                                      std::pair("0.4999999999", "0.5000000001")}) {
+  for (const auto& [before, after] :
+       {std::pair("0.5", "0.5000000001"), std::pair("0.4999999999", "0.5"), std::pair("0.4999999999", "0.5000000001"),
+        std::pair("0.5", "0.5000000005"), std::pair("0.4999999995", "0.5")}) {
     const auto table = [&, from = before, to = after](const std::string& first, const std::string& second) {
       return "[[0, " + first + "], [" + from + ", " + first + "], [" + to + ", " + second + "], [1, " + second + "]]";
     };
@@ -53,7 +55,7 @@ TEST_F(SegmentEnds, a_jump_at_the_end_of_a_segment_is_the_jump_of_both) {
                                          [](double sum, const Particle& p) { return sum + p.mass; });
       EXPECT_NEAR(all, mass[k], 1e-9) << before << ", " << after;
       const double expected = 0.125 / (3 * stiffness[k]);
-      EXPECT_NEAR(compliance(segment), expected, 1e-8 * expected) << before << ", " << after;
+      EXPECT_NEAR(compliance(segment), expected, 2e-8 * expected) << before << ", " << after;
     }
   }
 }
