@@ -117,16 +117,13 @@ class Refinement {
   using Matrix = std::decay_t<std::invoke_result_t<Function&, double>>;
   static constexpr double epsilon = std::numeric_limits<double>::epsilon(), agreed = 1e-12, rounding = 64 * epsilon;
 
-  /// Near h, of few binary digits: places that are not far out are exact then, and slopes of what is linear too. It is
-  /// no power of two, and no whole multiple of what divides a millimetre or a turn: of what repeats in it a whole
-  /// number of times, as teeth and magnets do, neither it nor an eighth of it would see anything. Where a place has
-  /// fewer digits than steps are to agree to, steps are powers of two of 16 of its least digits or more.
+  /// The power of two next to h: places that are not far out are exact then, and f alone rounds. It is no whole
+  /// multiple of what divides a millimetre or a turn: of what repeats in it a whole number of times, as teeth and
+  /// magnets do, neither it nor an eighth of it would see anything. None is below 16 of the least digits of the place.
   [[nodiscard]] double first_step(double h) const {
-    constexpr double few_digits = 31.0 / 32;
     if (!(h > 0) || !std::isfinite(h)) return h;
     const double power = std::exp2(std::round(std::log2(h)));
-    if (!(epsilon * place_ > agreed * h) || !std::isfinite(place_)) return few_digits * power;
-    return power < 8 * shortest_ ? std::exp2(std::ceil(std::log2(8 * shortest_))) : power;
+    return power < 8 * shortest_ && std::isfinite(shortest_) ? std::exp2(std::ceil(std::log2(8 * shortest_))) : power;
   }
   Matrix difference() {
     sizes_.resize(0, 0);

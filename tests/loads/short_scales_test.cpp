@@ -69,20 +69,19 @@ TEST(FarAway, SpringsHaveTheirStiffness) {
   EXPECT_NEAR(stiffness("0.001", "-10 * ((h + 1e10) - 1e10)"), 10, 0.05);
 }
 
-constexpr double first_step = 0x1.fp-11;  ///< of a millimetre: 31/32 of the power of two that is nearest
+constexpr double first_step = 0x1p-10;  ///< of a millimetre: the power of two that is nearest
 
 TEST(RefinedDifference, HasTheNumbersOfItsFirstStepWhereAShorterOneGivesTheSame) {
   const auto f = [](double x) { return Number(std::sin(1 + x)); };
   EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, first_step)(0));
 }
 
-/// Steps of few binary digits add to places without rounding; of a unit slope the weights leave none either.
+/// Steps that are powers of two add to places, and multiply with slopes, without rounding.
 TEST(RefinedDifference, OfWhatIsLinearIsExact) {
-  EXPECT_EQ(refined_difference([](double x) { return Number(1 + x); }, 1e-3)(0), 1);
-  for (const double slope : {1.0, 3.0, -0.25, 1024.0})
-    for (const double value : {0.0, 1.0, -5.0})
-      EXPECT_DOUBLE_EQ(refined_difference([&](double x) { return Number(value + slope * x); }, 1e-3)(0), slope)
-          << value;
+  for (const double slope : {1.0, 3.0, 0.7, -0.25, 315000.0, 1.0 / 3})
+    EXPECT_EQ(refined_difference([&](double x) { return Number(slope * x); }, 1e-3)(0), slope);
+  for (const double value : {1.0, -5.0})
+    EXPECT_EQ(refined_difference([&](double x) { return Number(value + 3 * x); }, 1e-3)(0), 3) << value;
 }
 
 /// Of a contact or a latch of short reach, which long steps do not meet.

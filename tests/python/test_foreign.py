@@ -228,8 +228,10 @@ def test_studies_ask_python_from_several_threads():
     trade = scene.trade(formulations=["quadratic"], integrators=["dopri5", "rk4"], tolerances=[1e-4, 1e-6], jobs=3)
     own = turntable(law=withy.hinge_spring(hinge="axle", stiffness=5)).trade(
         formulations=["quadratic"], integrators=["dopri5", "rk4"], tolerances=[1e-4, 1e-6], jobs=1)
-    errors = [[point["hinge_error"] for point in of["points"]] for of in (trade, own)]
-    assert numpy.allclose(*errors, rtol=1e-3, atol=1e-12) and len(errors[0]) >= 4
+    # Nothing where a run did not come to its end.
+    errors = [numpy.array([point["hinge_error"] for point in of["points"]], dtype=float) for of in (trade, own)]
+    assert numpy.allclose(*errors, rtol=1e-3, atol=1e-12, equal_nan=True) and len(errors[0]) >= 4
+    assert numpy.isfinite(errors[0]).sum() >= 3
     slopes = scene.linearize()
     assert numpy.abs(numpy.array(slopes["A"])[1, 0] + 5 / 0.52) < 1e-5
 
