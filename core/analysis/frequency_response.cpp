@@ -73,19 +73,24 @@ KnownRoots without(const LinearSystem& system, const KnownRoots& roots, const Kn
   constexpr double known = 1e-6;
   std::vector<Eigen::Index> left(static_cast<std::size_t>(roots.values.size())), gone;
   std::iota(left.begin(), left.end(), Eigen::Index{0});
-  // Multipliers of motions that are over after a sample are rounding of zero, whose logarithms differ.
-  const auto over = [&](Complex value) { return system.sampled() && std::abs(value) < 1e-9; };
+  // Multipliers of motions that are over after a sample, or after some, are rounding of zero, and its root where these
+  // follow each other: their logarithms differ.
+  const auto over = [&](const KnownRoots& of, Eigen::Index i) {
+    return system.sampled() && std::abs(of.values[i]) < std::max(1e-9, 10 * of.errors[i]);
+  };
   for (Eigen::Index k = 0; k < others.values.size(); ++k) {
     const Complex other = others.values[k], s = exponent_of(system, other);
+    const bool is_over = over(others, k);
     const auto apart = [&](Eigen::Index i) {
-      return over(roots.values[i]) && over(other) ? 0.0 : std::abs(exponent_of(system, roots.values[i]) - s);
+      if (is_over || over(roots, i)) return is_over && over(roots, i) ? 0.0 : std::numeric_limits<double>::infinity();
+      return std::abs(exponent_of(system, roots.values[i]) - s);
     };
     const auto nearest =
         std::min_element(left.begin(), left.end(), [&](Eigen::Index a, Eigen::Index b) { return apart(a) < apart(b); });
     if (nearest == left.end()) break;
     const double errors = error_of_exponent(system, roots.values[*nearest], roots.errors[*nearest]) +
                           error_of_exponent(system, other, others.errors[k]);
-    if (!(apart(*nearest) <= (over(other) ? 0.0 : known * std::abs(s) + errors))) continue;
+    if (!(apart(*nearest) <= (is_over ? 0.0 : known * std::abs(s) + errors))) continue;
     gone.push_back(*nearest);
     left.erase(nearest);
   }
