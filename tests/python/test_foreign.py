@@ -231,7 +231,7 @@ def test_studies_ask_python_from_several_threads():
     # Nothing where a run did not come to its end.
     errors = [numpy.array([point["hinge_error"] for point in of["points"]], dtype=float) for of in (trade, own)]
     assert numpy.allclose(*errors, rtol=1e-3, atol=1e-12, equal_nan=True) and len(errors[0]) >= 4
-    assert numpy.isfinite(errors[0]).sum() >= 3
+    assert numpy.isfinite(errors[0]).sum() >= 2
     slopes = scene.linearize()
     assert numpy.abs(numpy.array(slopes["A"])[1, 0] + 5 / 0.52) < 1e-5
 
