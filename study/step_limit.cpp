@@ -155,7 +155,7 @@ std::string StepLimit::cause() const {
   constexpr double near_limit = 0.6;
   // Steps land on what they may not pass, and are shorter here and there.
   constexpr double all_of_it = 0.9;
-  if (!limit || product == 0) return "unknown";
+  if (!limit || mean == 0 || fastest == 0) return "unknown";
   if (!fastest_rests() && product > near_limit * *limit) return "stability";
   return !controlled || mean >= all_of_it * longest ? "given" : "accuracy";
 }
@@ -181,8 +181,9 @@ StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Regist
   find_fastest(prepared, summary, resting, s);
   if (s.cause() != "stability") return s;
   const EquationsOfMotion& equations = *prepared.equations;
-  if (!s.made_by_load)
-    s.fewer = best_slowing(*scene.model, system_of_moving(equations, summary.final, resting),
+  // In longer steps what rests now grows once they are too long for it: all modes count.
+  if (!s.made_by_load && s.resting.empty())
+    s.fewer = best_slowing(*scene.model, equations.system(summary.final.time, summary.final.y),
                            closing_rows(equations, summary.final.y));
   // Those with error control, so that no step need be chosen. The first folds stiffness into a symmetric mass matrix.
   for (const std::string id : {"imex", "radau"}) {

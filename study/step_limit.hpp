@@ -20,7 +20,7 @@ struct StepLimit {
   /// none limits steps. `fastest` where nothing rests; 0 where all does.
   double moving = 0;
   std::string resting = {};     ///< the coordinate that makes `fastest` more than `moving`; empty where none does
-  double product = 0;           ///< mean step times `moving`; 0 where it is not known
+  double product = 0;           ///< mean step times `moving`; 0 where it is not known, or nothing is fast
   std::string maker = {};       ///< what makes what moves so fast, in words; empty where it is not known
   bool made_by_load = false;    ///< a load does
   std::optional<double> limit;  ///< of that product, beyond which the integrator is not stable
