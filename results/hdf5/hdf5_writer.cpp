@@ -16,10 +16,9 @@ constexpr hsize_t chunk = 512;  ///< rows that are compressed together
 /// Up to so many columns others may read a file while it is written: the library goes over all of them again and again
 /// for that. 2,000 took six times as long as they take without, and the time grows with the square.
 constexpr std::size_t most_shared = 256;
-/// Up to so many numbers a table that is there whole is kept as it is, within what describes its datasets, which has
-/// checksums too. Compressed in parts it would be a third smaller, and a short run takes a sixth longer for it.
-constexpr hsize_t few = 1 << 16;
-constexpr hsize_t most_compact = 7500;  ///< rows: a description has 64 kB
+/// Up to so many numbers, 4 MB, a table that is there whole is not compressed: each column is one part with a checksum.
+/// Compressed it would be an eighth to a third smaller, and a short run takes a tenth longer for it.
+constexpr hsize_t few = 1 << 19;
 using Clock = std::chrono::steady_clock;
 
 /// Texts of many columns, which are often those of their neighbours.
@@ -159,8 +158,10 @@ class Hdf5Writer final : public Hdf5Recorder {
   /// How datasets are kept, which have so many rows, or with 0 grow.
   [[nodiscard]] Hdf5Handle part_by_part(hsize_t rows) const {
     Hdf5Handle how(need(H5Pcreate(H5P_DATASET_CREATE)), &H5Pclose);
-    if (rows > 0 && rows * units_.size() <= few && rows <= most_compact) {
-      need(H5Pset_layout(how, H5D_COMPACT));
+    if (rows > 0 && rows * units_.size() <= few) {
+      // In their descriptions rows would be moved with each attribute, which takes longer than to write them.
+      need(H5Pset_chunk(how, 1, &rows));
+      need(H5Pset_fletcher32(how));
       return how;
     }
     const hsize_t part = rows > 0 ? std::min(rows, chunk) : chunk;
