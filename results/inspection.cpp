@@ -46,9 +46,6 @@ std::string type_of(const Scene& scene, const char* group, const std::string& na
   return said(scene, group, name, "type");
 }
 
-/// The name that the scene has for a body: the whole's for a segment.
-const std::string& scene_name(const BodyNode& body) { return body.segment ? body.segment->whole : body.name; }
-
 double mass_of(const Body& body) {
   double mass = 0;
   for (const Particle& p : body.shape().particles) mass += p.mass;
@@ -61,7 +58,7 @@ std::string parent_of(const Model& model, const HingeNode& hinge) {
   const BodyNode& parent = model.bodies()[static_cast<std::size_t>(hinge.parent)];
   const BodyNode& child = model.bodies()[static_cast<std::size_t>(hinge.child)];
   const bool inside = parent.segment && child.segment && parent.segment->whole == child.segment->whole;
-  return (inside ? parent.name : scene_name(parent)) + '.' +
+  return (inside ? parent.name : parent.scene_name()) + '.' +
          parent.frames[static_cast<std::size_t>(hinge.parent_frame)].name;
 }
 
@@ -78,11 +75,11 @@ Json bodies_json(const Scene& scene) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& body = model.bodies()[b];
     const HingeNode& hinge = model.hinges()[b];
-    const std::string own = own_formulation(scene, scene_name(body));
+    const std::string own = own_formulation(scene, body.scene_name());
     // The welds between segments are not in the scene.
     const std::string hinge_type = type_of(scene, "hinges", hinge.name);
     bodies.push_back({{"name", body.name},
-                      {"type", type_of(scene, "bodies", scene_name(body))},
+                      {"type", type_of(scene, "bodies", body.scene_name())},
                       {"mass", mass_of(*body.body)},
                       {"modes", body.body->shape().mode_names},
                       {"remarks", body.body->remarks()},
@@ -252,10 +249,10 @@ std::string tree_text(const Scene& scene) {
     const Branch& branch = all.at(e.body);
     const BodyNode& body = model.bodies()[static_cast<std::size_t>(e.body)];
     const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(e.body)];
-    const std::string own = own_formulation(scene, scene_name(body));
+    const std::string own = own_formulation(scene, body.scene_name());
     out += fmt::format("{}{} {}{}: {}{}, {:.6g} kg{}   [{}: {} at {}{}{}]\n", e.indent, e.last ? "└─" : "├─",
-                       e.level > most_indented ? fmt::format("(level {}) ", e.level) : "", scene_name(body),
-                       type_of(scene, "bodies", scene_name(body)),
+                       e.level > most_indented ? fmt::format("(level {}) ", e.level) : "", body.scene_name(),
+                       type_of(scene, "bodies", body.scene_name()),
                        branch.segments > 1 ? fmt::format(" in {} segments", branch.segments) : "", branch.mass,
                        branch.modes > 0 ? fmt::format(", {} mode{}", branch.modes, branch.modes > 1 ? "s" : "") : "",
                        hinge.name, type_of(scene, "hinges", hinge.name), parent_of(model, hinge), reflected_text(hinge),

@@ -204,7 +204,7 @@ void SceneEvents::add_releases(const Model& model, const Value& asked, ActingEve
     std::string problem;
     if (body.empty()) {
       std::vector<std::string> names;
-      for (const BodyNode& b : model.bodies()) names.push_back(b.segment ? b.segment->whole : b.name);
+      for (const BodyNode& b : model.bodies()) names.push_back(b.scene_name());
       problem = fmt::format("no body {}{}", in_quotes(item.text()), checker_.suggest(item.text(), names));
     } else if (const std::string& hinge = model.hinges()[static_cast<std::size_t>(body.front())].name;
                std::find(held_.begin(), held_.end(), hinge) == held_.end()) {

@@ -186,7 +186,7 @@ ReferenceFamilies reference_families(const Candidates& candidates, const Prepare
 std::vector<std::string> flexible_bodies(const Scene& scene) {
   std::unordered_set<std::string> flexible;
   for (const BodyNode& b : scene.model->bodies())
-    if (b.body->shape().modes() > 0) flexible.insert(b.segment ? b.segment->whole : b.name);
+    if (b.body->shape().modes() > 0) flexible.insert(b.scene_name());
   std::vector<std::string> names;
   for (const auto& [name, body] : scene.source.at("bodies").members())
     if (flexible.contains(name)) names.push_back(name);

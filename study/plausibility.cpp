@@ -69,7 +69,7 @@ Extent extent(const Prepared& prepared) {
   std::map<std::string, Box> bodies;
   for (std::size_t b = 0; b < prepared.model().bodies().size(); ++b) {
     const BodyNode& node = prepared.model().bodies()[b];
-    Box& own = bodies[node.segment ? node.segment->whole : node.name];
+    Box& own = bodies[node.scene_name()];
     for (std::size_t f = 0; f < node.frames.size(); ++f) {
       const WorldPose pose = seen->frame_pose(static_cast<int>(b), static_cast<int>(f));
       const Vector3 p = Eigen::Map<const Vector3>(pose.position.data());
@@ -107,7 +107,7 @@ void look_at_bodies(const Prepared& prepared, std::vector<Remark>& all) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
     if (node.segment && node.segment->index > 0) continue;
-    const std::string& name = node.segment ? node.segment->whole : node.name;
+    const std::string& name = node.scene_name();
     const Place place = place_in_scene(prepared.scene, "bodies", name);
     for (const std::string& remark : node.body->remarks()) all.push_back({place, remark});
     const ModalShape& shape = node.body->shape();

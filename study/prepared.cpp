@@ -180,7 +180,7 @@ Beyond compile_throughout(const Prepared& prepared, Registry& registry, const st
     return {formulation, scene.model, compile_model(*make_formulation(registry, formulation), scene.model), false};
   SceneValues values = prepared.values;
   for (const BodyNode& body : bodies) {
-    const std::string& name = body.segment ? body.segment->whole : body.name;
+    const std::string& name = body.scene_name();
     if (body.terms) values.body_formulation(name, formulation, "every body in one formulation");
   }
   const Scene all = make_scene(values.choose_formulation(formulation, "every body in one formulation"), registry);

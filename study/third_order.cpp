@@ -24,7 +24,7 @@ std::string without_exact_kinematics(const Model& model) {
   for (const BodyNode& node : model.bodies()) {
     if (node.body->shape().modes() == 0 || node.body->rod() != nullptr) continue;
     if (node.segment && node.segment->index > 0) continue;
-    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", node.segment ? node.segment->whole : node.name);
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", node.scene_name());
   }
   return names;
 }
