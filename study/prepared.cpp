@@ -55,10 +55,8 @@ double drift_limit(const Scene& scene) {
     return (t.truncation == Truncation::none || (t.truncation == Truncation::symmetric && weightless)) &&
            t.products_of_speeds;
   };
-  const auto& bodies = scene.model->bodies();
-  const bool all =
-      scene.formulation_name != "auto" && conserves(scene.formulation->terms()) &&
-      std::all_of(bodies.begin(), bodies.end(), [&](const BodyNode& b) { return !b.terms || conserves(*b.terms); });
+  const std::vector<Terms> terms = terms_in_use(scene);
+  const bool all = scene.formulation_name != "auto" && std::all_of(terms.begin(), terms.end(), conserves);
   if (!all && flexible(*scene.model)) return std::numeric_limits<double>::infinity();
   const Value* rtol = scene.source.at("integrator").find("rtol");
   return rtol != nullptr ? std::clamp(of_tolerance * rtol->number(), least, most) : least;
@@ -142,6 +140,13 @@ std::string use_threads(Prepared& prepared, std::size_t threads) {
   BranchEquations branched = on_threads(prepared.equations, threads);
   if (branched.equations != nullptr) prepared.equations = std::move(branched.equations);
   return branched.refusal;
+}
+
+std::vector<Terms> terms_in_use(const Scene& scene) {
+  std::vector<Terms> all{scene.formulation->terms()};
+  for (const BodyNode& body : scene.model->bodies())
+    if (body.terms) all.push_back(*body.terms);
+  return all;
 }
 
 bool has_own_energy(const Scene& scene) { return scene.formulation->terms().truncation == Truncation::symmetric; }
