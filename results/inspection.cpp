@@ -15,6 +15,7 @@
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/tree/rigid_inertia.hpp"
 #include "withy/results/certificate_json.hpp"
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/json_text.hpp"
@@ -46,12 +47,6 @@ std::string type_of(const Scene& scene, const char* group, const std::string& na
   return said(scene, group, name, "type");
 }
 
-double mass_of(const Body& body) {
-  double mass = 0;
-  for (const Particle& p : body.shape().particles) mass += p.mass;
-  return mass;
-}
-
 /// Where a hinge is fixed on its parent: "world", "link1.tip". A weld between segments names the segment.
 std::string parent_of(const Model& model, const HingeNode& hinge) {
   if (hinge.parent < 0) return "world";
@@ -80,7 +75,7 @@ Json bodies_json(const Scene& scene) {
     const std::string hinge_type = type_of(scene, "hinges", hinge.name);
     bodies.push_back({{"name", body.name},
                       {"type", type_of(scene, "bodies", body.scene_name())},
-                      {"mass", mass_of(*body.body)},
+                      {"mass", rigid_inertia(body.body->shape()).mass},
                       {"modes", body.body->shape().mode_names},
                       {"remarks", body.body->remarks()},
                       {"formulation", own.empty() ? study::formulation_title(scene) : own},
@@ -212,7 +207,7 @@ std::map<int, Branch> branches(const Model& model, std::vector<int>& branch_of) 
     Branch& branch = all[held];
     branch.held = held;
     branch.segments = body.segment ? body.segment->count : 1;
-    branch.mass += mass_of(*body.body);
+    branch.mass += rigid_inertia(body.body->shape()).mass;
     branch.modes += body.body->shape().mode_names.size();
   }
   return all;

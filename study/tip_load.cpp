@@ -68,6 +68,16 @@ std::optional<RigidLoad> in_direction(const Matrix6& I, const std::string& strai
 
 }  // namespace
 
+BodyMasses masses_of(const Model& model) {
+  BodyMasses m{std::vector<double>(model.bodies().size()), std::vector<double>(model.bodies().size())};
+  for (std::size_t b = model.bodies().size(); b-- > 0;) {
+    m.own[b] = rigid_inertia(model.bodies()[b].body->shape()).mass;
+    const int parent = model.hinges()[b].parent;
+    if (parent >= 0) m.carried[static_cast<std::size_t>(parent)] += m.carried[b] + m.own[b];
+  }
+  return m;
+}
+
 std::vector<Matrix6> tip_loads(const Model& model, const State& state) {
   const auto& bodies = model.bodies();
   const auto& hinges = model.hinges();

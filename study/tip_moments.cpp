@@ -13,6 +13,7 @@
 
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/mode_basis.hpp"
+#include "withy/study/tip_load.hpp"
 
 namespace withy::study {
 namespace {
@@ -23,21 +24,6 @@ namespace {
 constexpr double carries_something = 0.2, noticeable = 0.015, better_share = 0.5, weak = 1e-6;
 constexpr std::size_t few_enough = 20;       ///< bodies of a tree that are looked at
 constexpr std::size_t most_functions = 100;  ///< that polynomials have
-
-/// Of each body, its own mass, and that of all that hangs on it without itself.
-struct Masses {
-  std::vector<double> own, carried;
-};
-
-Masses masses_of(const Model& model) {
-  Masses m{std::vector<double>(model.bodies().size()), std::vector<double>(model.bodies().size())};
-  for (std::size_t b = model.bodies().size(); b-- > 0;) {
-    for (const Particle& p : model.bodies()[b].body->shape().particles) m.own[b] += p.mass;
-    const int parent = model.hinges()[b].parent;
-    if (parent >= 0) m.carried[static_cast<std::size_t>(parent)] += m.carried[b] + m.own[b];
-  }
-  return m;
-}
 
 /// Deflections of tips by their body's name, under its weight and that of all it carries along the world's axes in
 /// turn, all hinges held and all other bodies straight, over the acceleration [s²]; nothing of bodies that have no tip.
@@ -154,7 +140,7 @@ std::string said_of(const std::vector<Bending>& strains, const Deflections& own,
 
 void look_at_tip_moments(const Prepared& prepared, Registry& registry, std::vector<Remark>& all) {
   const Model& model = prepared.model();
-  const Masses masses = masses_of(model);
+  const BodyMasses masses = masses_of(model);
   // All bodies at once, for each is looked at with all others straight.
   SceneValues proposed = prepared.values, richer = prepared.values;
   std::map<std::string, std::vector<Bending>> bending;
