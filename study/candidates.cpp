@@ -16,9 +16,8 @@
 namespace withy::study {
 namespace {
 
-/// Bases that are complete for any clamped beam, whatever it carries. Where that is much, the tip's static shapes and
-/// modes with a fixed tip need fewer, and the fastest of n has a frequency like n², not n⁴.
-constexpr const char* polynomials = "orthogonal-polynomials";
+/// A basis that is complete for any clamped beam, whatever it carries. Where that is much, the tip's static shapes and
+/// modes with a fixed tip need fewer than polynomials, and the fastest of n has a frequency like n², not n⁴.
 constexpr const char* static_shapes = "craig-bampton";
 /// What stands for all formulations where no body is flexible: the one of scenes that name none.
 constexpr const char* plain_formulation = "quadratic";

@@ -1,8 +1,11 @@
 #include "withy/study/mode_basis.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "withy/core/plugin/mode_family.hpp"
 
@@ -118,6 +121,24 @@ std::optional<std::vector<double>> same_shape(const Body& from, std::span<const 
   const Eigen::VectorXd wanted = fields_along(from, length, sections) * given;
   const Eigen::VectorXd found = fields_along(to, length, sections).colPivHouseholderQr().solve(wanted);
   return std::vector<double>(found.begin(), found.end());
+}
+
+std::string notably_faster_strains(const Scene& scene, const BodyModes& modes, const Body& body,
+                                   const OtherFamily& other, Registry& registry) {
+  constexpr double notably_faster = 0.015;  // of a frequency: less is hardly worth a word
+  std::string text;
+  Eigen::Index from = 0;
+  for (const ModeCount& count : modes.counts) {
+    const auto n = static_cast<Eigen::Index>(count.modes), first = std::exchange(from, from + n);
+    if (n == 0 || count.family_path.empty() || count.family_id() == other.family || !other.compared(count)) continue;
+    const auto with_other = body_with(scene, modes.body, {{count.family_path, Value(other.family)}}, registry);
+    if (with_other == nullptr || with_other->shape().modes() != body.shape().modes()) continue;
+    const double has = other.first_hertz(body, first, n), could = other.first_hertz(*with_other, first, n);
+    if (!(has > (1 + notably_faster) * could)) continue;
+    text += fmt::format("{}{} {} modes of {} vibrate first at {:.4g} Hz, as many of {} at {:.4g} Hz",
+                        text.empty() ? "" : "; ", n, count.strain, count.family_id(), has, other.family, could);
+  }
+  return text;
 }
 
 }  // namespace withy::study
