@@ -199,11 +199,10 @@ std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, 
   for (const std::size_t s : hinge_speeds(layout)) {
     if (layout.speed_names[s] == name) return {s};
   }
-  std::string known;
-  for (const Slot& slot : layout.hinges) {
-    if (slot.speeds > 0) known += (known.empty() ? "" : ", ") + slot.name;
-  }
-  throw OptionError(what, fmt::format("no hinge '{}'; known: {}", name, known));
+  std::vector<std::string> known;
+  for (const Slot& slot : layout.hinges)
+    if (slot.speeds > 0) known.push_back(slot.name);
+  throw OptionError(what, fmt::format("no hinge '{}'; known: {}", name, fmt::join(known, ", ")));
 }
 
 std::vector<std::size_t> hinge_speeds(const Layout& layout) {
@@ -347,9 +346,8 @@ std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
 
 std::string derivatives_text(const Tangents& tangents) {
   if (tangents.differenced.empty()) return "exact";
-  std::string names;
-  for (const std::string& n : tangents.differenced) names += (names.empty() ? "" : ", ") + n;
-  return "exact but for the loads " + names + ", by central differences of eighth order";
+  return fmt::format("exact but for the loads {}, by central differences of eighth order",
+                     fmt::join(tangents.differenced, ", "));
 }
 
 }  // namespace withy::study

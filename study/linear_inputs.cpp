@@ -1,5 +1,7 @@
 #include "withy/study/linear_inputs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "withy/core/model/hinge_rates.hpp"
@@ -51,10 +53,12 @@ std::vector<std::size_t> named_speeds(const Configuration& c, const std::string&
   try {
     speeds = speeds_of(model, name, "inputs");
   } catch (const OptionError& e) {
-    std::string inputs;
-    for (const std::size_t l : input_loads(model)) inputs += (inputs.empty() ? "" : ", ") + model.loads()[l].name;
+    std::vector<std::string> inputs;
+    for (const std::size_t l : input_loads(model)) inputs.push_back(model.loads()[l].name);
     const std::string problem = std::string(e.what()).substr(std::string("inputs: ").size());
-    throw OptionError("inputs", problem + (inputs.empty() ? "" : "; loads of the type input: " + inputs));
+    throw OptionError("inputs", inputs.empty()
+                                    ? problem
+                                    : fmt::format("{}; loads of the type input: {}", problem, fmt::join(inputs, ", ")));
   }
   for (const std::size_t s : speeds)
     if (c.held()[s]) throw OptionError("inputs", c.layout().speed_names[s] + " is held: no effort moves it");

@@ -81,21 +81,21 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
   if (!hinge.empty() && slot == nullptr)
     throw OptionError("input", "no hinge '" + hinge + "' that load '" + name + "' could act on");
   Eigen::MatrixXd slopes = all;
-  std::string names;
+  std::vector<std::string> names;
   std::vector<std::size_t> speeds;
   for (std::size_t s = 0; s < c.layout().speeds; ++s) {
     const auto row = static_cast<Eigen::Index>(s);
     const bool here = slot == nullptr || (s >= slot->speed && s < slot->speed + slot->speeds);
     if (!here || c.held()[s]) slopes.row(row).setZero();
     if (slopes.row(row).isZero(0)) continue;
-    names += (names.empty() ? "" : ", ") + c.layout().speed_names[s];
+    names.push_back(c.layout().speed_names[s]);
     speeds.push_back(s);
   }
   if (speeds.empty()) throw nothing_fed_back(name);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeThinU | Eigen::ComputeThinV);
   if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
-    throw OptionError("input",
-                      "load '" + name + "' feeds back to " + names + "; name one hinge, as " + name + ".HINGE");
+    throw OptionError("input", fmt::format("load '{0}' feeds back to {1}; name one hinge, as {0}.HINGE", name,
+                                           fmt::join(names, ", ")));
   Answer answer{svd.matrixU().col(0), {}, speeds.size() == 1 ? unit_of_speed(c.prepared().model(), speeds[0]) : ""};
   Eigen::Index greatest = 0;
   answer.along.cwiseAbs().maxCoeff(&greatest);
