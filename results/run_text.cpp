@@ -15,7 +15,6 @@
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
-#include "withy/core/model/hinge_rates.hpp"
 #include "withy/study/formulation_meaning.hpp"
 #include "withy/study/run.hpp"
 
@@ -72,21 +71,19 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
   for (const auto& [body, d] : summary.peak_deflection) {
     line("peak deflection " + body, fmt::format("y {:.5g} m, z {:.5g} m", d[1], d[2]));
   }
-  const auto effort_text = [&](const std::vector<double>& efforts, const Slot& slot, std::size_t i) {
-    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(&slot - model.layout().hinges.data())];
-    return fmt::format("{:.5g} {}", efforts.at(slot.speed + i), hinge_rates(*hinge.hinge)[i].angular ? "N m" : "N");
+  const auto effort_text = [&](const std::vector<double>& efforts, std::size_t speed) {
+    return fmt::format("{:.5g} {}", efforts.at(speed), unit_of_effort(model, speed));
   };
   for (const Slot& slot : model.layout().hinges) {
-    for (std::size_t i = 0; i < slot.speeds; ++i)
-      if (summary.peak_effort.at(slot.speed + i) > 0)
-        line("peak effort " + model.layout().speed_names[slot.speed + i], effort_text(summary.peak_effort, slot, i));
+    for (std::size_t s = slot.speed; s < slot.speed + slot.speeds; ++s)
+      if (summary.peak_effort.at(s) > 0)
+        line("peak effort " + model.layout().speed_names[s], effort_text(summary.peak_effort, s));
   }
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = model.layout().hinges[static_cast<std::size_t>(motion.hinge)];
-    for (std::size_t i = 0; i < slot.speeds; ++i)
+    for (std::size_t s = slot.speed; s < slot.speed + slot.speeds; ++s)
       line("effort of motion " + motion.name,
-           fmt::format("peak {} on {}", effort_text(summary.peak_motion_effort, slot, i),
-                       model.layout().speed_names[slot.speed + i]));
+           fmt::format("peak {} on {}", effort_text(summary.peak_motion_effort, s), model.layout().speed_names[s]));
   }
   for (const EventTime& e : summary.events)
     line("event " + e.name,

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/linear_parts.hpp"
 #include "withy/study/turning_ends.hpp"
@@ -64,15 +64,6 @@ struct Answer {
   std::string unit;  ///< of the effort where there is one alone; else empty
 };
 
-std::string unit_of_speed(const Model& model, std::size_t speed) {
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const Slot& slot = model.layout().hinges[h];
-    if (speed >= slot.speed && speed < slot.speed + slot.speeds)
-      return hinge_rates(*model.hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
-  }
-  return "";
-}
-
 /// Takes the slopes of a load's efforts apart. \param hinge that the loop is opened at; empty: at all efforts
 /// \throws InputError where the efforts are not in one proportion
 Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::string& name,
@@ -96,7 +87,7 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
   if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
     throw OptionError("input", fmt::format("load '{0}' feeds back to {1}; name one hinge, as {0}.HINGE", name,
                                            fmt::join(names, ", ")));
-  Answer answer{svd.matrixU().col(0), {}, speeds.size() == 1 ? unit_of_speed(c.prepared().model(), speeds[0]) : ""};
+  Answer answer{svd.matrixU().col(0), {}, speeds.size() == 1 ? unit_of_effort(c.prepared().model(), speeds[0]) : ""};
   Eigen::Index greatest = 0;
   answer.along.cwiseAbs().maxCoeff(&greatest);
   answer.along /= answer.along[greatest];

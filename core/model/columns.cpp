@@ -112,4 +112,13 @@ std::vector<Column> motion_effort_columns(const HingeNode& hinge) {
   return c;
 }
 
+std::string unit_of_effort(const Model& model, std::size_t speed) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    if (speed >= slot.speed && speed < slot.speed + slot.speeds)
+      return hinge_rates(*model.hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
+  }
+  return {};
+}
+
 }  // namespace withy
