@@ -61,7 +61,6 @@ class SmallMotions {
 
  private:
   void hold(const Configuration& c, Model& model, bool needed);
-  [[nodiscard]] Eigen::VectorXd efforts_of(const State& state, int load) const;
   void find_steps(const Configuration& c);
 
   std::shared_ptr<const Model> model_;
