@@ -1,13 +1,11 @@
 #include "withy/study/tip_load.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/QR>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "withy/core/tree/rigid_inertia.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy::study {
 namespace {
@@ -44,12 +42,7 @@ Matrix6 through(const Matrix6& I, const Eigen::Matrix<double, 6, Eigen::Dynamic,
 }
 
 /// To six digits: functions need no more, and people read them.
-double rounded(double x) {
-  const std::string text = fmt::format("{:.6g}", x);
-  double value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
+double rounded(double x) { return to_digits(x, 6); }
 
 /// A load in one direction of bending: of a rigid body the mass, mass times offset, and inertia about the tip.
 struct RigidLoad {
