@@ -8,19 +8,10 @@
 #include <utility>
 
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/scene/value_path.hpp"
 
 namespace withy::study {
 namespace {
-
-const Value* value_below(const Value& map, const std::string& path) {
-  const Value* at = &map;
-  for (std::size_t begin = 0; at != nullptr && begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    at = at->kind() == Value::Kind::map ? at->find(path.substr(begin, end - begin)) : nullptr;
-    begin = end + 1;
-  }
-  return at;
-}
 
 void set_below(Value& map, const std::string& path, const Value& value) {
   const std::size_t dot = path.find('.');
@@ -81,7 +72,7 @@ bool spans_cantilevers(const Value& family, Registry& registry) {
 
 std::string family_path(const Scene& scene, const std::string& body, const ModeCount& count, Registry& registry) {
   if (!count.family_path.empty() || count.strain.empty()) return count.family_path;
-  const Value* value = value_below(scene.source, "bodies." + body);
+  const Value* value = value_at(scene.source, "bodies." + body);
   const Plugin<Body>* plugin = value != nullptr ? plugin_of(*value, registry) : nullptr;
   if (plugin == nullptr) return {};
   for (const ParameterSpec& strain : plugin->parameters) {
@@ -93,17 +84,17 @@ std::string family_path(const Scene& scene, const std::string& body, const ModeC
 }
 
 const Value* family_at(const Scene& scene, const std::string& body, const std::string& path) {
-  return path.empty() ? nullptr : value_below(scene.source, "bodies." + body + '.' + path);
+  return path.empty() ? nullptr : value_at(scene.source, "bodies." + body + '.' + path);
 }
 
 bool varies(const Scene& scene, const std::string& body) {
-  const Value* given = value_below(scene.source, "bodies." + body);
+  const Value* given = value_at(scene.source, "bodies." + body);
   return given != nullptr && has_table(*given);
 }
 
 std::shared_ptr<const Body> body_with(const Scene& scene, const std::string& body,
                                       const std::vector<std::pair<std::string, Value>>& values, Registry& registry) {
-  const Value* given = value_below(scene.source, "bodies." + body);
+  const Value* given = value_at(scene.source, "bodies." + body);
   const Plugin<Body>* plugin = given != nullptr ? plugin_of(*given, registry) : nullptr;
   if (plugin == nullptr) return nullptr;
   Value changed = *given;
