@@ -19,7 +19,7 @@
 #include "withy/scene/units.hpp"
 #include "withy/study/check_loads.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/trees_alone.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {

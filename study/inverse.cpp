@@ -5,7 +5,7 @@
 
 #include "withy/core/model/columns.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/trees_alone.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 

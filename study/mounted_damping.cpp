@@ -12,7 +12,7 @@
 #include "withy/core/shape/vibrations.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/states_of_loads.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/check_loads.hpp"
-#include "withy/study/trees_alone.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {
