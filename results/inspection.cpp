@@ -20,7 +20,7 @@
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/study/formulation_meaning.hpp"
-#include "withy/study/indicators_at.hpp"
+#include "withy/study/indicators.hpp"
 
 namespace withy {
 namespace {
