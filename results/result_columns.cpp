@@ -133,6 +133,14 @@ const std::vector<double>& ResultColumns::row_of_seen(const State& state) {
   return row_;
 }
 
+std::vector<ResultColumns> columns_of_rungs(const study::Prepared& prepared) {
+  std::vector<ResultColumns> all;
+  all.reserve(prepared.rungs.size() + 1);
+  if (!prepared.escalates()) all.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
+  for (const Rung& rung : prepared.rungs) all.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
+  return all;
+}
+
 State state_of_row(const Layout& layout, std::span<const double> row) {
   State state;
   state.time = row[0];
