@@ -153,6 +153,24 @@ std::string not_repeating(const Configuration& c, const State& steady, const Tur
   return {};
 }
 
+/// Why a whole turn is not looked at; empty where it is.
+std::string no_whole_turn(const Configuration& c, const State& steady, const Turning& turning) {
+  if (turning.period == 0)
+    return turning.problem.empty() ? "nothing turns: spin a hinge (--spin), or give the period (--period)"
+                                   : turning.problem;
+  if (const std::string motion = motion_not_repeating(c, steady, turning.period); !motion.empty())
+    return fmt::format(
+        "motion '{}' moves otherwise {:.6g} s later, and no turn is like the next: give the period after which "
+        "everything repeats (--period)",
+        motion, turning.period);
+  if (const std::string load = not_repeating(c, steady, turning); !load.empty())
+    return fmt::format(
+        "load '{0}' acts otherwise {1:.6g} s later, and no turn is like the next: take it away (--set "
+        "loads.{0}=null), or give the period after which everything repeats (--period)",
+        load, turning.period);
+  return {};
+}
+
 /// Adds what becomes of what loads sample, which `check_turn` takes for held.
 void meet_sampled_loads(const Configuration& c, const State& steady, double period, TurningModes& result) {
   if (!c.sampled()) return;
@@ -204,26 +222,8 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
     result.turns = turns(c.prepared().model(), result.check.turning);
     if (!wish.floquet && !wish.blades) return result;
     const Turning& turning = result.check.turning;
-    if (turning.period == 0) {
-      result.problem = turning.problem.empty() ? "nothing turns: spin a hinge (--spin), or give the period (--period)"
-                                               : turning.problem;
-      return result;
-    }
-    if (const std::string motion = motion_not_repeating(c, steady, turning.period); !motion.empty()) {
-      result.problem = fmt::format(
-          "motion '{}' moves otherwise {:.6g} s later, and no turn is like the next: give the period after which "
-          "everything repeats (--period)",
-          motion, turning.period);
-      return result;
-    }
-    if (const std::string load = not_repeating(c, steady, turning); !load.empty()) {
-      result.problem = fmt::format(
-          "load '{0}' acts otherwise {1:.6g} s later, and no turn is like the next: take it away (--set "
-          "loads.{0}=null), or "
-          "give the period after which everything repeats (--period)",
-          load, turning.period);
-      return result;
-    }
+    result.problem = no_whole_turn(c, steady, turning);
+    if (!result.problem.empty()) return result;
     const std::size_t least = instants_of_loads(c, steady, turning);
     const TurningForm form = turning_form(c.dynamics(), steady, c.held(), turning, static_cast<Eigen::Index>(least));
     result.moves = !form.turn.constant;
