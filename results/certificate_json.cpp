@@ -103,7 +103,7 @@ Json estimate_json(const Certificate& c) {
   if (!c.estimate) return {};
   const study::ErrorEstimate& e = *c.estimate;
   Json j = {{"against", e.against}};
-  j.update(distances_json(e.distances));
+  j.update(named_distances_json(e.distances));
   j["at_most"] = e.at_most;
   j["until"] = e.distances.until;
   j["off"] = e.off;
@@ -113,7 +113,7 @@ Json estimate_json(const Certificate& c) {
 }
 
 Json more_modes_json(const study::MoreModes& more) {
-  Json j = distances_json(more.distances);
+  Json j = named_distances_json(more.distances);
   j["until"] = more.distances.until;
   j["evaluations"] = more.evaluations;
   j["cpu_seconds"] = more.cpu_seconds;
@@ -135,7 +135,7 @@ Json steps_json(const study::StepLimit& s) {
 
 }  // namespace
 
-Json distances_json(const study::NamedDistances& d) {
+Json named_distances_json(const study::NamedDistances& d) {
   return {{"hinges", d.hinges},
           {"tips", d.tips},
           {"deflections", d.deflections},
