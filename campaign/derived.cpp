@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <stdexcept>
 
@@ -13,18 +12,10 @@
 #include "withy/core/plugin/formula.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/value_path.hpp"
 
 namespace withy::campaign {
 namespace {
-
-/// The member or item of that name.
-const Value* part_of(const Value& whole, const std::string& key) {
-  if (whole.kind() != Value::Kind::list) return whole.find(key);
-  std::size_t index = 0;
-  const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), index);
-  const bool good = problem == std::errc() && end == key.data() + key.size() && index < whole.items().size();
-  return good ? &whole.items()[index] : nullptr;
-}
 
 /// The scene's own number at a path, in SI units; nothing where there is none.
 std::optional<double> own_number(const study::Prepared& base, const std::string& path) {
@@ -58,16 +49,6 @@ std::string name_trouble(const Plan& plan, const Derived& derived, const std::st
 }
 
 }  // namespace
-
-const Value* value_at(const Value& whole, const std::string& path) {
-  const Value* at = &whole;
-  for (std::size_t start = 0; at != nullptr && start <= path.size();) {
-    const std::size_t stop = std::min(path.find('.', start), path.size());
-    at = part_of(*at, path.substr(start, stop - start));
-    start = stop + 1;
-  }
-  return at;
-}
 
 std::optional<double> number_at(const Value& source, const std::string& path) {
   const Value* at = value_at(source, path);

@@ -20,8 +20,6 @@ void check_derived(const Plan& plan, Registry& registry, Problems& problems);
 /// \param values of the axes, and of what is derived before it
 double value_of(const Derived& derived, const study::Prepared& base, const CaseValues& values);
 
-/// What stands at a path in a value, as "0.mass"; null where nothing does.
-const Value* value_at(const Value& whole, const std::string& path);
 /// The number at a path of the checked values of a scene, in SI units; nothing where there is none.
 std::optional<double> number_at(const Value& source, const std::string& path);
 

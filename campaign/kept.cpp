@@ -205,11 +205,7 @@ KeptPlaces kept_places(const Plan& plan) {
 }
 
 KeptNumbers::KeptNumbers(const Plan& plan, const study::Prepared& prepared, const KeptPlaces& of_base)
-    : histories_({}, plan.history.times) {
-  columns_.reserve(prepared.rungs.size() + 1);
-  if (!prepared.escalates()) columns_.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
-  for (const Rung& rung : prepared.rungs)
-    columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
+    : columns_(columns_of_rungs(prepared)), histories_({}, plan.history.times) {
   const bool as_base =
       same_columns(plan.base->model(), plan.base->scene.outputs, prepared.model(), prepared.scene.outputs);
   places_ = as_base ? of_base : kept_places(plan, prepared, columns_.front().columns());

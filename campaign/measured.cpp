@@ -196,9 +196,6 @@ class MeasuredReader {
   }
 
   void weigh(MeasuredColumn& column) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const double x : column.values)
-      if (std::isfinite(x)) least = std::min(least, x), most = std::max(most, x);
     if (column.count() == 0) {
       problem(1, 1, fmt::format("column {} has no values", in_quotes(column.name)));
       return;
@@ -215,7 +212,7 @@ class MeasuredReader {
       column.deviation = reading.value.value_or(1);
       column.deviation_given = true;
     }
-    if (!column.deviation_given) column.deviation = most - least;
+    if (!column.deviation_given) column.deviation = column.range();
     // Of several columns those that nobody asked for are left out.
     if (column.deviation == 0 && !wish_.outputs.empty())
       problem(1, 1,
@@ -269,6 +266,13 @@ class MeasuredReader {
 std::size_t MeasuredColumn::count() const {
   return static_cast<std::size_t>(
       std::count_if(values.begin(), values.end(), [](double x) { return std::isfinite(x); }));
+}
+
+double MeasuredColumn::range() const {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const double x : values)
+    if (std::isfinite(x)) least = std::min(least, x), most = std::max(most, x);
+  return most - least;
 }
 
 std::size_t Measured::count() const {

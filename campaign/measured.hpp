@@ -21,6 +21,8 @@ struct MeasuredColumn {
 
   /// Count of the values that there are.
   [[nodiscard]] std::size_t count() const;
+  /// From the least of them to the greatest; below zero where there are none.
+  [[nodiscard]] double range() const;
 };
 
 struct Measured {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <thread>
 
@@ -124,9 +123,6 @@ std::vector<ColumnFit> column_fits(const Measured& data, const MatchedRun& start
   std::vector<ColumnFit> fits;
   for (std::size_t c = 0; c < data.columns.size(); ++c) {
     const MeasuredColumn& column = data.columns[c];
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const double x : column.values)
-      if (std::isfinite(x)) least = std::min(least, x), most = std::max(most, x);
     const auto rms = [&](const std::vector<double>& run) {
       double sum = 0;
       for (std::size_t i = 0; i < run.size(); ++i)
@@ -137,7 +133,7 @@ std::vector<ColumnFit> column_fits(const Measured& data, const MatchedRun& start
     if (start.ok()) fit.at_start = start.columns[c], fit.before = rms(fit.at_start);
     fit.at_end = end.columns[c];
     fit.after = rms(fit.at_end);
-    fit.correlation = neighbours(column, fit.at_end, fit.after, most - least);
+    fit.correlation = neighbours(column, fit.at_end, fit.after, column.range());
     fits.push_back(std::move(fit));
   }
   return fits;

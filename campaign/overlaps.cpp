@@ -4,6 +4,7 @@
 
 #include "withy/campaign/derived.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/value_path.hpp"
 
 namespace withy::campaign {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "withy/campaign/least_squares.hpp"
 #include "withy/campaign/mismatch.hpp"
 #include "withy/campaign/random.hpp"
 #include "withy/results/result_columns.hpp"
+#include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::campaign {
@@ -205,8 +205,7 @@ void TuneSearch::add_parameters() {
   for (std::size_t i = 0; i < m_.tuned.size(); ++i) {
     const double z = z_[static_cast<Index>(i)];
     const TunedValue& t = m_.tuned[i];
-    FittedValue fitted{
-        t, FittedValue::State::fitted, std::strtod(fmt::format("{:.9g}", t.value(z)).c_str(), nullptr), {}, {}};
+    FittedValue fitted{t, FittedValue::State::fitted, to_digits(t.value(z), 9), {}, {}};
     if (z < t.lower + near || z > t.upper - near) fitted.state = FittedValue::State::at_bound;
     for (const Undetermined& u : undetermined_) {
       if (u.coordinate != i) continue;

@@ -10,6 +10,7 @@
 
 #include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
+#include "withy/scene/value_path.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -20,24 +21,6 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 std::string place_path(std::string path) {
   std::replace(path.begin(), path.end(), '.', '/');
   return '/' + path;
-}
-
-/// The value at a path of the checked scene, defaults among them; null where there is none.
-const Value* find_checked(const Value& root, const std::string& path) {
-  const Value* at = &root;
-  for (std::size_t begin = 0; at != nullptr && begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const std::string key = path.substr(begin, end - begin);
-    if (at->kind() == Value::Kind::list) {
-      const auto index = plain_number(key);
-      const bool there = index && *index >= 0 && *index < static_cast<double>(at->items().size());
-      at = there ? &at->items()[static_cast<std::size_t>(*index)] : nullptr;
-    } else {
-      at = at->find(key);
-    }
-    begin = end + 1;
-  }
-  return at;
 }
 
 /// What the scene has against a value at a path: its own message; nothing where it takes it.
@@ -113,7 +96,7 @@ class TunedReader {
 
   bool read_start(TunedValue& tuned) {
     const Value* written = scene_.values.find(tuned.path);
-    const Value* checked = find_checked(scene_.scene.source, tuned.path);
+    const Value* checked = value_at(scene_.scene.source, tuned.path);  // defaults among them
     const Value* given = written != nullptr ? written : checked;
     if (given == nullptr)
       return problem(tuned, objection(scene_.values, tuned.path, Value(1.0), registry_)

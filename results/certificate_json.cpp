@@ -101,24 +101,23 @@ Json plan_json(const Certificate& c) {
 
 Json estimate_json(const Certificate& c) {
   if (!c.estimate) return {};
-  return {{"against", c.estimate->against},
-          {"hinges", c.estimate->distances.hinges},
-          {"tips", c.estimate->distances.tips},
-          {"deflections", c.estimate->distances.deflections},
-          {"moments", c.estimate->distances.moments},
-          {"forces", c.estimate->distances.forces},
-          {"at_most", c.estimate->at_most},
-          {"until", c.estimate->distances.until},
-          {"off", c.estimate->off},
-          {"evaluations", c.estimate->evaluations},
-          {"cpu_seconds", c.estimate->cpu_seconds}};
+  const study::ErrorEstimate& e = *c.estimate;
+  Json j = {{"against", e.against}};
+  j.update(named_distances_json(e.distances));
+  j["at_most"] = e.at_most;
+  j["until"] = e.distances.until;
+  j["off"] = e.off;
+  j["evaluations"] = e.evaluations;
+  j["cpu_seconds"] = e.cpu_seconds;
+  return j;
 }
 
 Json more_modes_json(const study::MoreModes& more) {
-  return {{"hinges", more.distances.hinges},           {"tips", more.distances.tips},
-          {"deflections", more.distances.deflections}, {"moments", more.distances.moments},
-          {"forces", more.distances.forces},           {"until", more.distances.until},
-          {"evaluations", more.evaluations},           {"cpu_seconds", more.cpu_seconds}};
+  Json j = named_distances_json(more.distances);
+  j["until"] = more.distances.until;
+  j["evaluations"] = more.evaluations;
+  j["cpu_seconds"] = more.cpu_seconds;
+  return j;
 }
 
 Json steps_json(const study::StepLimit& s) {
@@ -135,6 +134,14 @@ Json steps_json(const study::StepLimit& s) {
 }
 
 }  // namespace
+
+Json named_distances_json(const study::NamedDistances& d) {
+  return {{"hinges", d.hinges},
+          {"tips", d.tips},
+          {"deflections", d.deflections},
+          {"moments", d.moments},
+          {"forces", d.forces}};
+}
 
 Json families_json(const std::vector<study::BodyFamilies>& families) {
   Json all = Json::array();

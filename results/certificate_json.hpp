@@ -14,6 +14,8 @@ nlohmann::ordered_json certificate_json(const Scene& scene, const RunSummary& su
 /// The content of run.json.
 nlohmann::ordered_json run_json(const Scene& scene, const RunSummary& summary, const study::Certificate& certificate);
 
+/// Of hinges and tips, by their names, without the time up to which they are.
+nlohmann::ordered_json named_distances_json(const study::NamedDistances& distances);
 nlohmann::ordered_json families_json(const std::vector<study::BodyFamilies>& families);
 nlohmann::ordered_json indicators_json(const std::vector<study::Indicator>& indicators);
 

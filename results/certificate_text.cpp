@@ -14,6 +14,7 @@
 
 #include "withy/core/model/columns.hpp"
 #include "withy/core/simulation/validity_limits.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy {
 namespace {
@@ -225,11 +226,10 @@ std::vector<std::string> plan_text(const study::Certificate& certificate) {
 /// A value to so many digits that it is seen on which side of its limit, of three digits, it lies.
 std::string beside_limit(double value, double limit) {
   constexpr int most = 17;
-  const double told = std::stod(fmt::format("{:.3g}", limit));
+  const double told = to_digits(limit, 3);
   for (int digits = 2; digits < most; ++digits) {
-    std::string text = fmt::format("{:.{}g}", value, digits);
-    const double rounded = std::stod(text);
-    if (value > limit ? rounded > told : rounded <= told) return text;
+    const double rounded = to_digits(value, digits);
+    if (value > limit ? rounded > told : rounded <= told) return fmt::format("{:.{}g}", value, digits);
   }
   return fmt::format("{:.{}g}", value, most);
 }

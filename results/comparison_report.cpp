@@ -96,8 +96,8 @@ void add_runs(Json& runs, const ComparisonAt& group, bool varied, Registry& regi
       // At the start all are alike: a run that has nothing more in common with the reference has no distances.
       const bool measured = group.comparison.has_distances(run);
       const study::NamedDistances d = measured ? group.comparison.distances(run) : study::NamedDistances();
-      j["distance"] = {{"hinges", d.hinges},   {"tips", d.tips},     {"deflections", d.deflections},
-                       {"moments", d.moments}, {"forces", d.forces}, {"until", d.until}};
+      j["distance"] = named_distances_json(d);
+      j["distance"]["until"] = d.until;
       if (!group.comparison.outputs.empty()) j["outputs"] = Json::array();
       for (const auto& o : measured ? group.comparison.output_errors(run) : OutputErrors())
         j["outputs"].push_back({{"output", o.label}, {"unit", o.unit}, {"distance", o.distance}, {"range", o.range}});

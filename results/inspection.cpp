@@ -15,11 +15,12 @@
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/tree/rigid_inertia.hpp"
 #include "withy/results/certificate_json.hpp"
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/study/formulation_meaning.hpp"
-#include "withy/study/indicators_at.hpp"
+#include "withy/study/indicators.hpp"
 
 namespace withy {
 namespace {
@@ -46,22 +47,13 @@ std::string type_of(const Scene& scene, const char* group, const std::string& na
   return said(scene, group, name, "type");
 }
 
-/// The name that the scene has for a body: the whole's for a segment.
-const std::string& scene_name(const BodyNode& body) { return body.segment ? body.segment->whole : body.name; }
-
-double mass_of(const Body& body) {
-  double mass = 0;
-  for (const Particle& p : body.shape().particles) mass += p.mass;
-  return mass;
-}
-
 /// Where a hinge is fixed on its parent: "world", "link1.tip". A weld between segments names the segment.
 std::string parent_of(const Model& model, const HingeNode& hinge) {
   if (hinge.parent < 0) return "world";
   const BodyNode& parent = model.bodies()[static_cast<std::size_t>(hinge.parent)];
   const BodyNode& child = model.bodies()[static_cast<std::size_t>(hinge.child)];
   const bool inside = parent.segment && child.segment && parent.segment->whole == child.segment->whole;
-  return (inside ? parent.name : scene_name(parent)) + '.' +
+  return (inside ? parent.name : parent.scene_name()) + '.' +
          parent.frames[static_cast<std::size_t>(hinge.parent_frame)].name;
 }
 
@@ -78,12 +70,12 @@ Json bodies_json(const Scene& scene) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& body = model.bodies()[b];
     const HingeNode& hinge = model.hinges()[b];
-    const std::string own = own_formulation(scene, scene_name(body));
+    const std::string own = own_formulation(scene, body.scene_name());
     // The welds between segments are not in the scene.
     const std::string hinge_type = type_of(scene, "hinges", hinge.name);
     bodies.push_back({{"name", body.name},
-                      {"type", type_of(scene, "bodies", scene_name(body))},
-                      {"mass", mass_of(*body.body)},
+                      {"type", type_of(scene, "bodies", body.scene_name())},
+                      {"mass", rigid_inertia(body.body->shape()).mass},
                       {"modes", body.body->shape().mode_names},
                       {"remarks", body.body->remarks()},
                       {"formulation", own.empty() ? study::formulation_title(scene) : own},
@@ -215,7 +207,7 @@ std::map<int, Branch> branches(const Model& model, std::vector<int>& branch_of) 
     Branch& branch = all[held];
     branch.held = held;
     branch.segments = body.segment ? body.segment->count : 1;
-    branch.mass += mass_of(*body.body);
+    branch.mass += rigid_inertia(body.body->shape()).mass;
     branch.modes += body.body->shape().mode_names.size();
   }
   return all;
@@ -252,10 +244,10 @@ std::string tree_text(const Scene& scene) {
     const Branch& branch = all.at(e.body);
     const BodyNode& body = model.bodies()[static_cast<std::size_t>(e.body)];
     const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(e.body)];
-    const std::string own = own_formulation(scene, scene_name(body));
+    const std::string own = own_formulation(scene, body.scene_name());
     out += fmt::format("{}{} {}{}: {}{}, {:.6g} kg{}   [{}: {} at {}{}{}]\n", e.indent, e.last ? "└─" : "├─",
-                       e.level > most_indented ? fmt::format("(level {}) ", e.level) : "", scene_name(body),
-                       type_of(scene, "bodies", scene_name(body)),
+                       e.level > most_indented ? fmt::format("(level {}) ", e.level) : "", body.scene_name(),
+                       type_of(scene, "bodies", body.scene_name()),
                        branch.segments > 1 ? fmt::format(" in {} segments", branch.segments) : "", branch.mass,
                        branch.modes > 0 ? fmt::format(", {} mode{}", branch.modes, branch.modes > 1 ? "s" : "") : "",
                        hinge.name, type_of(scene, "hinges", hinge.name), parent_of(model, hinge), reflected_text(hinge),

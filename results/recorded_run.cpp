@@ -125,10 +125,8 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
 
 }  // namespace
 
-RunTable::RunTable(const study::Prepared& prepared, Recorder& recorder) : recorder_(recorder) {
-  if (!prepared.escalates()) columns_.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
-  for (const Rung& rung : prepared.rungs)
-    columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
+RunTable::RunTable(const study::Prepared& prepared, Recorder& recorder)
+    : recorder_(recorder), columns_(columns_of_rungs(prepared)) {
   recorder_.begin(columns_.front().columns());
 }
 

@@ -1,14 +1,10 @@
 #include "withy/results/result_columns.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
 #include <limits>
-
-#include "withy/core/model/hinge_rates.hpp"
 
 namespace withy {
 namespace {
@@ -16,11 +12,6 @@ namespace {
 void add(std::vector<Column>& columns, const std::string& name, std::initializer_list<const char*> suffixes,
          const std::string& unit) {
   for (const char* suffix : suffixes) columns.push_back({name + suffix, unit});
-}
-
-/// "name", or "name.0", "name.1", … where there are several.
-std::string numbered(const std::string& name, std::size_t index, std::size_t count) {
-  return count == 1 ? name : fmt::format("{}.{}", name, index);
 }
 
 std::string hinge_frame(const HingeNode& hinge) { return "F of hinge " + hinge.name; }
@@ -102,10 +93,7 @@ const ResultColumns::Names& ResultColumns::named() const {
   in("world");
   for (const MotionNode& motion : model_.motions()) {
     const HingeNode& hinge = model_.hinges()[static_cast<std::size_t>(motion.hinge)];
-    const std::vector<HingeRate> rates = hinge_rates(*hinge.hinge);
-    for (std::size_t i = 0; i < rates.size(); ++i)
-      names_.columns.push_back(
-          {numbered(hinge.name + ".motion_effort", i, rates.size()), rates[i].angular ? "N m" : "N"});
+    append(motion_effort_columns(hinge));
     in(hinge_frame(hinge));
   }
   add(columns, "", {"kinetic_energy", "potential_energy", "work"}, "J");
@@ -143,6 +131,14 @@ const std::vector<double>& ResultColumns::row_of_seen(const State& state) {
   append(e.angular_momentum);
   append_sensors(state);
   return row_;
+}
+
+std::vector<ResultColumns> columns_of_rungs(const study::Prepared& prepared) {
+  std::vector<ResultColumns> all;
+  all.reserve(prepared.rungs.size() + 1);
+  if (!prepared.escalates()) all.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
+  for (const Rung& rung : prepared.rungs) all.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
+  return all;
 }
 
 State state_of_row(const Layout& layout, std::span<const double> row) {

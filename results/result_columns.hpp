@@ -13,6 +13,7 @@
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/study/prepared.hpp"
 
 namespace withy {
 
@@ -62,6 +63,9 @@ class ResultColumns {
   std::vector<double> efforts_, row_;
   std::vector<std::size_t> nonfinite_;
 };
+
+/// Of a scene: one for its equations, or for each rung where its formulation is `auto`. `prepared` must outlive them.
+std::vector<ResultColumns> columns_of_rungs(const study::Prepared& prepared);
 
 /// The state that a row tells of: time, coordinates and rates; discrete states and work are zero.
 State state_of_row(const Layout& layout, std::span<const double> row);

@@ -15,7 +15,6 @@
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
-#include "withy/core/model/hinge_rates.hpp"
 #include "withy/study/formulation_meaning.hpp"
 #include "withy/study/run.hpp"
 
@@ -52,60 +51,71 @@ std::string readable(double value, const std::string& unit) {
   return fmt::format("{:.6g}{}{}", value, unit.empty() || unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
-std::string run_table(const study::Prepared& prepared, const RunSummary& summary) {
-  const Scene& scene = prepared.scene;
-  const Model& model = *scene.model;
-  std::vector<std::pair<std::string, std::string>> lines;
-  const auto line = [&](std::string what, std::string text) { lines.emplace_back(std::move(what), std::move(text)); };
-  line("outcome", study::outcome_text(summary));
+/// What is told of a run, a line each: what it is of, and the text.
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
+void add_final_coordinates(const Model& model, const State& last, Lines& lines) {
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const auto columns = coordinate_columns(model.hinges()[h]);
     const Slot& slot = model.layout().hinges[h];
     std::size_t first = 0;
     if (columns.size() >= 4 && columns[0].name.ends_with(".qw")) {
-      line("final " + model.hinges()[h].name, attitude(std::span(summary.final.y).subspan(slot.position, 4)));
+      lines.emplace_back("final " + model.hinges()[h].name, attitude(std::span(last.y).subspan(slot.position, 4)));
       first = 4;
     }
     for (std::size_t i = first; i < columns.size(); ++i)
-      line("final " + columns[i].name, readable(summary.final.y[slot.position + i], columns[i].unit));
+      lines.emplace_back("final " + columns[i].name, readable(last.y[slot.position + i], columns[i].unit));
   }
-  for (const auto& [body, d] : summary.peak_deflection) {
-    line("peak deflection " + body, fmt::format("y {:.5g} m, z {:.5g} m", d[1], d[2]));
-  }
-  const auto effort_text = [&](const std::vector<double>& efforts, const Slot& slot, std::size_t i) {
-    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(&slot - model.layout().hinges.data())];
-    return fmt::format("{:.5g} {}", efforts.at(slot.speed + i), hinge_rates(*hinge.hinge)[i].angular ? "N m" : "N");
+}
+
+void add_efforts(const Model& model, const RunSummary& summary, Lines& lines) {
+  const auto effort_text = [&](const std::vector<double>& efforts, std::size_t speed) {
+    return fmt::format("{:.5g} {}", efforts.at(speed), unit_of_effort(model, speed));
   };
-  for (const Slot& slot : model.layout().hinges) {
-    for (std::size_t i = 0; i < slot.speeds; ++i)
-      if (summary.peak_effort.at(slot.speed + i) > 0)
-        line("peak effort " + model.layout().speed_names[slot.speed + i], effort_text(summary.peak_effort, slot, i));
-  }
+  for (const Slot& slot : model.layout().hinges)
+    for (std::size_t s = slot.speed; s < slot.speed + slot.speeds; ++s)
+      if (summary.peak_effort.at(s) > 0)
+        lines.emplace_back("peak effort " + model.layout().speed_names[s], effort_text(summary.peak_effort, s));
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = model.layout().hinges[static_cast<std::size_t>(motion.hinge)];
-    for (std::size_t i = 0; i < slot.speeds; ++i)
-      line("effort of motion " + motion.name,
-           fmt::format("peak {} on {}", effort_text(summary.peak_motion_effort, slot, i),
-                       model.layout().speed_names[slot.speed + i]));
+    for (std::size_t s = slot.speed; s < slot.speed + slot.speeds; ++s)
+      lines.emplace_back(
+          "effort of motion " + motion.name,
+          fmt::format("peak {} on {}", effort_text(summary.peak_motion_effort, s), model.layout().speed_names[s]));
   }
+}
+
+void add_events(const Model& model, const RunSummary& summary, Lines& lines) {
   for (const EventTime& e : summary.events)
-    line("event " + e.name,
-         fmt::format("{:.6g} s{}", e.time, e.direction > 0 ? ", upwards" : (e.direction < 0 ? ", downwards" : "")));
+    lines.emplace_back("event " + e.name, fmt::format("{:.6g} s{}", e.time,
+                                                      e.direction > 0   ? ", upwards"
+                                                      : e.direction < 0 ? ", downwards"
+                                                                        : ""));
   const EventBook book(model);
   for (std::size_t i = 0; book.any() && i < book.plan().events.size(); ++i)
     if (const double loss = book.numbers(summary.final.y, i).loss; loss != 0)
-      line("energy lost in " + book.plan().events[i].name, readable(loss, "J"));
-  if (summary.switchings > 0) line("switchings of loads", std::to_string(summary.switchings));
-  line("energy drift", fmt::format("{:.2g}", summary.energy_drift));
-  line("steps", fmt::format("{} ({} rejected), {} evaluations", summary.steps.accepted, summary.steps.rejected,
-                            summary.steps.evaluations));
-  line("CPU time", fmt::format("{:.4g} s", summary.cpu_seconds));
-  if (summary.conditioning.condition > 0) {
-    line("mass matrix at the end",
-         fmt::format("condition {:.3g}, determinant {}{}", summary.conditioning.condition,
-                     name_of_sign(summary.conditioning.determinant_sign),
-                     loops_of(model).empty() ? "" : ": of the tree, as if its loops were open"));
-  }
+      lines.emplace_back("energy lost in " + book.plan().events[i].name, readable(loss, "J"));
+  if (summary.switchings > 0) lines.emplace_back("switchings of loads", std::to_string(summary.switchings));
+}
+
+std::string run_table(const study::Prepared& prepared, const RunSummary& summary) {
+  const Scene& scene = prepared.scene;
+  const Model& model = *scene.model;
+  Lines lines{{"outcome", study::outcome_text(summary)}};
+  add_final_coordinates(model, summary.final, lines);
+  for (const auto& [body, d] : summary.peak_deflection)
+    lines.emplace_back("peak deflection " + body, fmt::format("y {:.5g} m, z {:.5g} m", d[1], d[2]));
+  add_efforts(model, summary, lines);
+  add_events(model, summary, lines);
+  lines.emplace_back("energy drift", fmt::format("{:.2g}", summary.energy_drift));
+  lines.emplace_back("steps", fmt::format("{} ({} rejected), {} evaluations", summary.steps.accepted,
+                                          summary.steps.rejected, summary.steps.evaluations));
+  lines.emplace_back("CPU time", fmt::format("{:.4g} s", summary.cpu_seconds));
+  if (summary.conditioning.condition > 0)
+    lines.emplace_back("mass matrix at the end",
+                       fmt::format("condition {:.3g}, determinant {}{}", summary.conditioning.condition,
+                                   name_of_sign(summary.conditioning.determinant_sign),
+                                   loops_of(model).empty() ? "" : ": of the tree, as if its loops were open"));
   std::size_t width = 23;  // that of the certificate below
   for (const auto& [what, text] : lines) width = std::max(width, what.size());
   std::string out =

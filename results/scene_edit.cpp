@@ -12,6 +12,7 @@
 #include "withy/scene/document.hpp"
 #include "withy/scene/same_content.hpp"
 #include "withy/scene/scene.hpp"
+#include "withy/scene/value_path.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy {
@@ -23,16 +24,6 @@ Document read(const std::string& text, const std::string& what) {
   if (!read_document(text, {}, document, diagnostics))
     throw study::InputError(what + ": " + diagnostics.errors().front().message);
   return document;
-}
-
-std::vector<std::string> keys_of_path(const std::string& path) {
-  std::vector<std::string> keys;
-  for (std::size_t begin = 0; begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    keys.push_back(path.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return keys;
 }
 
 /// Index in the text of a place's line and column.

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <utility>
 
 #include "withy/results/svg_parts.hpp"
 #include "withy/results/utf8.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy {
 namespace {
@@ -218,8 +218,8 @@ std::vector<double> decade_marks(double low, double high) {
 std::vector<std::string> mark_texts(const std::vector<double>& marks, int digits) {
   constexpr int most_digits = std::numeric_limits<double>::max_digits10;
   constexpr double worth_seeing = 0.01;  // of the way to the nearest neighbour
-  const auto told = [&](std::size_t i, const std::string& text) {
-    const double off = std::abs(std::strtod(text.c_str(), nullptr) - marks[i]);
+  const auto told = [&](std::size_t i) {
+    const double off = std::abs(to_digits(marks[i], digits) - marks[i]);
     return (i == 0 || off <= worth_seeing * std::abs(marks[i] - marks[i - 1])) &&
            (i + 1 == marks.size() || off <= worth_seeing * std::abs(marks[i + 1] - marks[i]));
   };
@@ -228,7 +228,7 @@ std::vector<std::string> mark_texts(const std::vector<double>& marks, int digits
     all = true;
     for (std::size_t i = 0; i < marks.size(); ++i) {
       texts[i] = fmt::format("{:.{}g}", marks[i], digits);
-      all = all && told(i, texts[i]);
+      all = all && told(i);
     }
   }
   return texts;

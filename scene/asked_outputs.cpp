@@ -9,6 +9,7 @@
 
 #include "withy/scene/same_content.hpp"
 #include "withy/scene/scene_values.hpp"
+#include "withy/scene/value_path.hpp"
 
 namespace withy {
 namespace {
@@ -54,16 +55,6 @@ constexpr std::array quantities = {
 
 /// Whether it is of a beam at a place, whose coordinate stands behind an @.
 bool at_a_place(const Quantity& q) { return q.of == Of::body && q.argument != nullptr; }
-
-std::vector<std::string> parts_of(std::string_view name) {
-  std::vector<std::string> parts;
-  for (std::size_t start = 0; start <= name.size();) {
-    const std::size_t stop = std::min(name.find('.', start), name.size());
-    parts.emplace_back(name.substr(start, stop - start));
-    start = stop + 1;
-  }
-  return parts;
-}
 
 std::string dotted(std::span<const std::string> parts) {
   std::string text;
@@ -125,7 +116,7 @@ bool says_number(std::string_view part) {
 
 /// The argument that stands at the beginning of what is behind an @: a word, or a frame, which may be a station.
 std::string argument_of(const Value& scene, const Quantity& q, std::string_view text) {
-  const std::vector<std::string> parts = parts_of(text);
+  const std::vector<std::string> parts = keys_of_path(text);
   const Value* bodies = scene.find("bodies");
   const Value* body = q.of == Of::frame && bodies != nullptr ? bodies->find(parts[0]) : nullptr;
   if (body == nullptr || parts.size() == 1) return parts[0];
@@ -138,7 +129,7 @@ std::string argument_of(const Value& scene, const Quantity& q, std::string_view 
 
 std::optional<AskedOutput> asked_output(const Value& scene, std::string_view name) {
   const std::size_t at = std::min(name.find('@'), name.size());
-  const std::vector<std::string> parts = parts_of(name.substr(0, at));
+  const std::vector<std::string> parts = keys_of_path(name.substr(0, at));
   for (std::size_t i = parts.size(); i-- > 0;) {
     if (at < name.size() && i + 1 < parts.size()) break;  // the argument follows the quantity
     const std::string object = dotted(std::span(parts).first(i));
@@ -168,7 +159,7 @@ std::optional<AskedOutput> asked_output(const Value& scene, std::string_view nam
 std::string problem_of_place(const Value& scene, std::string_view name) {
   const std::size_t at = name.find('@');
   if (at == std::string_view::npos) return {};
-  const std::vector<std::string> parts = parts_of(name.substr(0, at));
+  const std::vector<std::string> parts = keys_of_path(name.substr(0, at));
   const std::string object = dotted(std::span(parts).first(parts.size() - 1));
   const Quantity* q = quantity_of(scene, parts.back(), object);
   if (q == nullptr || !at_a_place(*q) || !scene_has(scene, q->of, object)) return {};

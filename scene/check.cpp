@@ -50,6 +50,14 @@ std::string first_name(const Value* names) {
   return names->kind() == Value::Kind::text ? names->text() : "";
 }
 
+/// A plugin that is given by its name alone.
+bool is_short_form(const Value& value) { return value.kind() == Value::Kind::text; }
+
+/// A map with the name under `key`, whichever form it is given in.
+Value in_long_form(const Value& value, const char* key) {
+  return is_short_form(value) ? Value::map({{key, value}}, value.place()) : value;
+}
+
 }  // namespace
 
 Checker::Moves Checker::moves(const std::string& hinge, const Value& map) const {
@@ -205,29 +213,23 @@ void Checker::no_frame(const Place& place, const std::string& name, const SceneN
 }
 
 std::optional<Value> Checker::mode_family(const Value& value) const {
-  const bool short_form = value.kind() == Value::Kind::text;
   Made<ModeFamily> made;
-  const Value* checked = check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : value, "name",
-                                          {grammar::family_name()}, *this, made);
-  if (checked == nullptr) return {};
-  return short_form ? value : std::move(made.value);
+  if (check_plugin_map(in_long_form(value, "name"), "name", {grammar::family_name()}, *this, made) == nullptr)
+    return {};
+  return is_short_form(value) ? value : std::move(made.value);
 }
 
 std::optional<Value> Checker::formulation(const Value& value) const {
-  const bool short_form = value.kind() == Value::Kind::text;
   Made<Formulation> made;
-  const Value* checked =
-      check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : grammar::named_formulation(value),
-                       "name", {grammar::formulation_name()}, *this, made);
-  if (checked == nullptr) return {};
-  return short_form ? value : std::move(made.value);
+  if (check_plugin_map(is_short_form(value) ? in_long_form(value, "name") : grammar::named_formulation(value), "name",
+                       {grammar::formulation_name()}, *this, made) == nullptr)
+    return {};
+  return is_short_form(value) ? value : std::move(made.value);
 }
 
 std::optional<Value> Checker::motion(const Value& value) const {
-  const bool short_form = value.kind() == Value::Kind::text;
   Made<Motion> made;
-  if (check_plugin_map(short_form ? Value::map({{"type", value}}, value.place()) : value, "type",
-                       {grammar::motion_type()}, *this, made) == nullptr)
+  if (check_plugin_map(in_long_form(value, "type"), "type", {grammar::motion_type()}, *this, made) == nullptr)
     return {};
   return std::move(made.value);
 }

@@ -7,6 +7,23 @@
 #include "withy/scene/names.hpp"
 
 namespace withy {
+namespace {
+
+/// The list of what a check makes of each item; nothing where it makes nothing of one.
+template <class Check>
+std::optional<Value> each_checked(const Value& list, Check&& check) {
+  Value result = Value::list({}, list.place());
+  bool good = true;
+  for (const Value& item : list.items()) {
+    std::optional<Value> checked = check(item);
+    good = good && checked.has_value();
+    if (good) result.items().push_back(std::move(*checked));
+  }
+  if (!good) return {};
+  return result;
+}
+
+}  // namespace
 
 std::optional<Value> Checker::row(const Value& value, const ParameterSpec& spec) const {
   if (value.kind() != Value::Kind::list || (spec.count != 0 && value.items().size() != spec.count)) {
@@ -77,15 +94,7 @@ std::optional<Value> Checker::matrix(const Value& value, const ParameterSpec& sp
   ParameterSpec line = spec;
   line.kind = ParameterSpec::Kind::vector;
   line.count = value.items()[0].items().size();
-  Value result = Value::list({}, value.place());
-  bool good = true;
-  for (const Value& item : value.items()) {
-    auto r = row(item, line);
-    good = good && r.has_value();
-    if (good) result.items().push_back(std::move(*r));
-  }
-  if (!good) return {};
-  return result;
+  return each_checked(value, [&](const Value& item) { return row(item, line); });
 }
 
 std::optional<Value> Checker::texts(const Value& value, const ParameterSpec& spec) const {
@@ -100,15 +109,7 @@ std::optional<Value> Checker::texts(const Value& value, const ParameterSpec& spe
     got(value, spec);
     return {};
   }
-  Value result = Value::list({}, value.place());
-  bool good = true;
-  for (const Value& item : value.items()) {
-    auto checked = text(item, one);
-    good = good && checked.has_value();
-    if (good) result.items().push_back(std::move(*checked));
-  }
-  if (!good) return {};
-  return result;
+  return each_checked(value, [&](const Value& item) { return text(item, one); });
 }
 
 std::optional<Value> Checker::named(const Value& value, const ParameterSpec& spec) const {

@@ -204,7 +204,7 @@ void SceneEvents::add_releases(const Model& model, const Value& asked, ActingEve
     std::string problem;
     if (body.empty()) {
       std::vector<std::string> names;
-      for (const BodyNode& b : model.bodies()) names.push_back(b.segment ? b.segment->whole : b.name);
+      for (const BodyNode& b : model.bodies()) names.push_back(b.scene_name());
       problem = fmt::format("no body {}{}", in_quotes(item.text()), checker_.suggest(item.text(), names));
     } else if (const std::string& hinge = model.hinges()[static_cast<std::size_t>(body.front())].name;
                std::find(held_.begin(), held_.end(), hinge) == held_.end()) {
@@ -299,6 +299,24 @@ void SceneEvents::resolve_after(EventPlan& plan) const {
   }
 }
 
+ActingEvent SceneEvents::acting_event(const Model& model, const std::string& name, const Value& given,
+                                      const Watched& number) const {
+  ActingEvent event;
+  event.name = name;
+  event.when = given.has("at") ? When::at : given.has("after") ? When::after : When::passes;
+  event.element = number.element;
+  event.column = number.column;
+  event.value = given.number_at("value");
+  event.direction = direction_of(given);
+  if (event.when == When::at) event.time = given.number_at("at");
+  event.delay = given.number_at("delay");
+  event.stops = given.at("stop").boolean();
+  add_actions(model, name, given.at("do"), event);
+  // What is only looked for is told every time.
+  event.repeats = given.at("repeat").boolean() || (given.at("do").members().empty() && !event.stops);
+  return event;
+}
+
 void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, std::vector<RunEvent>& plain) {
   EventPlan plan;
   refuse_circles(events_, checker_);
@@ -314,27 +332,19 @@ void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, s
       plain.push_back({name, function, direction_of(given), given.at("stop").boolean()});
       continue;
     }
-    ActingEvent event;
-    event.name = name;
-    event.when = given.has("at") ? When::at : given.has("after") ? When::after : When::passes;
-    event.element = number->element;
-    event.column = number->column;
+    std::shared_ptr<const BoundSensor> limit;
     if (given.has("limit")) {
-      std::shared_ptr<const BoundSensor> sensor = limit_of(model, given, checker_);
-      if (sensor == nullptr) continue;
+      limit = limit_of(model, given, checker_);
+      if (limit == nullptr) continue;
+    }
+    ActingEvent event = acting_event(model, name, given, *number);
+    if (limit != nullptr) {
       event.column = limits.size();
       at_limits.push_back(plan.events.size());
-      limits.push_back({name, std::move(sensor)});
+      limits.push_back({name, std::move(limit)});
+    } else {
+      senses = senses || (event.when == When::passes && event.element < 0);
     }
-    senses = senses || (event.when == When::passes && event.element < 0 && !given.has("limit"));
-    event.value = given.number_at("value");
-    event.direction = direction_of(given);
-    if (event.when == When::at) event.time = given.number_at("at");
-    event.delay = given.number_at("delay");
-    event.stops = given.at("stop").boolean();
-    add_actions(model, name, given.at("do"), event);
-    // What is only looked for is told every time.
-    event.repeats = given.at("repeat").boolean() || (given.at("do").members().empty() && !event.stops);
     plan.events.push_back(std::move(event));
   }
   if (plan.events.empty()) return;

@@ -34,6 +34,9 @@ class SceneEvents {
  private:
   [[nodiscard]] bool acts(const std::string& name, const Value& event, const Watched& number) const;
   [[nodiscard]] bool measures(const std::string& event, const Watched& number) const;
+  /// All but the number of a limit, which has no column yet.
+  [[nodiscard]] ActingEvent acting_event(const Model& model, const std::string& name, const Value& given,
+                                         const Watched& number) const;
   void add_actions(const Model& model, const std::string& name, const Value& asked, ActingEvent& event) const;
   void refuse_in_loops(const Model& model, const Value& asked) const;
   void add_hinge_actions(const Model& model, const Value& asked, const char* key, EventAction::Kind kind,

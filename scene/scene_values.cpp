@@ -12,6 +12,7 @@
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/scene/sha256.hpp"
+#include "withy/scene/value_path.hpp"
 
 namespace withy {
 namespace {
@@ -51,13 +52,9 @@ std::string how_to_add(const std::vector<std::string>& path) {
 
 /// The keys of "bodies.hub.mass"; none where one is empty or too long.
 std::vector<std::string> split(std::string_view path) {
-  std::vector<std::string> keys;
-  for (std::size_t start = 0; start <= path.size();) {
-    const std::size_t stop = std::min(path.find('.', start), path.size());
-    keys.emplace_back(path.substr(start, stop - start));
-    start = stop + 1;
-    if (keys.back().empty() || keys.back().size() > DocumentLimits::key_bytes) return {};
-  }
+  std::vector<std::string> keys = keys_of_path(path);
+  const auto bad = [](const std::string& key) { return key.empty() || key.size() > DocumentLimits::key_bytes; };
+  if (std::any_of(keys.begin(), keys.end(), bad)) keys.clear();
   return keys;
 }
 
@@ -302,18 +299,6 @@ SceneValues& SceneValues::apply(const SceneOptions& options) {
   return *this;
 }
 
-const Value* SceneValues::find(std::string_view path) const {
-  const std::vector<std::string> keys = split(path);
-  const Value* at = keys.empty() ? nullptr : &document_.root;
-  for (std::size_t i = 0; i < keys.size() && at != nullptr; ++i) {
-    if (at->kind() == Value::Kind::list) {
-      const auto index = list_index(keys[i], at->items().size());
-      at = index ? &at->items()[*index] : nullptr;
-    } else {
-      at = at->find(keys[i]);
-    }
-  }
-  return at;
-}
+const Value* SceneValues::find(std::string_view path) const { return value_at(document_.root, path); }
 
 }  // namespace withy

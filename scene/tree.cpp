@@ -92,6 +92,49 @@ class TreeBuilder {
       problems_.good = false;
   }
 
+  void find_parent(const Value& ends, Link& link, HingeNode& node) {
+    const Value* parent = ends.find("parent");
+    if (parent == nullptr || parent->kind() != Value::Kind::text) return;
+    const FrameName at = split(parent->text());
+    if (at.body != "world") {
+      link.parent = bodies_.find(*parent, at.body);
+      const TreeBodies::NodeFrame found = bodies_.frame(*parent, link.parent, at.frame);
+      node.parent = found.node;
+      node.parent_frame = found.frame;
+    } else if (at.frame == "root") {
+      link.parent = -1;
+    } else {
+      problems_.error(*parent, "the world has no frames; place the hinge with its offset");
+    }
+  }
+
+  void find_child(const Value& ends, Link& link, HingeNode& node) {
+    const Value* child = ends.find("child");
+    if (child == nullptr || child->kind() != Value::Kind::text) return;
+    link.child_place = child->place();
+    const FrameName at = split(child->text());
+    if (at.body == "world") {
+      problems_.error(*child, "the world cannot be a child");
+      return;
+    }
+    link.child = bodies_.find(*child, at.body);
+    const TreeBodies::NodeFrame found = bodies_.frame(*child, link.child, at.frame);
+    node.child = found.node;
+    node.child_frame = found.frame;
+    if (link.child >= 0) bodies_.hold(link.child, found.node);
+  }
+
+  void name_rates(const std::string& name, const Value& given, const Hinge& hinge) {
+    const std::vector<HingeRate> rates = hinge_rates(hinge);
+    if (!rates.empty() && is_column_of_all(name))
+      problems_.key_error(given.place().path,
+                          fmt::format("got name {}, which is that of a column that every table of results has; "
+                                      "hinges need their own",
+                                      in_quotes(name)));
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      if (!rates[i].angular) tree_.names.sliding.add(fmt::format("{}.{}", name, i));
+  }
+
   void add_hinge(const std::string& name, const Value& given) {
     problems_.check_name(name, given);
     tree_.names.hinges.add(name);
@@ -105,34 +148,8 @@ class TreeBuilder {
     node.name = name;
     // The ends are looked up whatever else is wrong.
     const Value& ends = made.plugin != nullptr ? made.value : given;
-    const Value* parent = ends.find("parent");
-    const Value* child = ends.find("child");
-    if (parent != nullptr && parent->kind() == Value::Kind::text) {
-      const FrameName at = split(parent->text());
-      if (at.body != "world") {
-        link.parent = bodies_.find(*parent, at.body);
-        const TreeBodies::NodeFrame found = bodies_.frame(*parent, link.parent, at.frame);
-        node.parent = found.node;
-        node.parent_frame = found.frame;
-      } else if (at.frame == "root") {
-        link.parent = -1;
-      } else {
-        problems_.error(*parent, "the world has no frames; place the hinge with its offset");
-      }
-    }
-    if (child != nullptr && child->kind() == Value::Kind::text) {
-      link.child_place = child->place();
-      const FrameName at = split(child->text());
-      if (at.body == "world") {
-        problems_.error(*child, "the world cannot be a child");
-      } else {
-        link.child = bodies_.find(*child, at.body);
-        const TreeBodies::NodeFrame found = bodies_.frame(*child, link.child, at.frame);
-        node.child = found.node;
-        node.child_frame = found.frame;
-        if (link.child >= 0) bodies_.hold(link.child, found.node);
-      }
-    }
+    find_parent(ends, link, node);
+    find_child(ends, link, node);
     if (value == nullptr) {
       problems_.good = false;
       return;
@@ -142,14 +159,7 @@ class TreeBuilder {
     if (node.hinge == nullptr) {
       problems_.good = false;
     } else {
-      const std::vector<HingeRate> rates = hinge_rates(*node.hinge);
-      if (!rates.empty() && is_column_of_all(name))
-        problems_.key_error(given.place().path,
-                            fmt::format("got name {}, which is that of a column that every table of results has; "
-                                        "hinges need their own",
-                                        in_quotes(name)));
-      for (std::size_t i = 0; i < rates.size(); ++i)
-        if (!rates[i].angular) tree_.names.sliding.add(fmt::format("{}.{}", name, i));
+      name_rates(name, given, *node.hinge);
     }
     take_reflected_inertia(given, *value, node);
     hinge_nodes_.push_back(std::move(node));

@@ -247,6 +247,12 @@ std::optional<double> plain_number(std::string_view text) {
   return value;
 }
 
+double to_digits(double value, int digits) {
+  const std::string text = fmt::format("{:.{}g}", value, digits);
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
 namespace {
 
 /// Spaces that do not break, as text that is copied from pages has them between a number and its unit.

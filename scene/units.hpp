@@ -62,4 +62,7 @@ bool looks_like_number(std::string_view text);
 /// Nothing for all else, such as `010`, `1:30`, `0x1f`, `1_000`, or a number out of the range of doubles.
 std::optional<double> plain_number(std::string_view text);
 
+/// A number as so many significant digits have it, which people read and type.
+double to_digits(double value, int digits);
+
 }  // namespace withy

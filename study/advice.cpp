@@ -8,6 +8,7 @@
 
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_times.hpp"
+#include "withy/scene/value_path.hpp"
 #include "withy/study/advice_search.hpp"
 #include "withy/study/advice_yardstick.hpp"
 #include "withy/study/input_error.hpp"
@@ -161,12 +162,7 @@ std::string more_time_text(const Advice& advice) {
 
 std::vector<Change> new_changes(const Scene& scene, const Point& choice, Registry& registry) {
   const auto says = [&](const Change& change) {
-    const Value* at = &scene.source;
-    for (std::size_t begin = 0; at != nullptr && begin <= change.path.size();) {
-      const std::size_t end = std::min(change.path.find('.', begin), change.path.size());
-      at = at->find(change.path.substr(begin, end - begin));
-      begin = end + 1;
-    }
+    const Value* at = value_at(scene.source, change.path);
     if (at == nullptr || at->kind() != change.value.kind()) return false;
     return (at->kind() == Value::Kind::number && at->number() == change.value.number()) ||
            (at->kind() == Value::Kind::text && at->text() == change.value.text());

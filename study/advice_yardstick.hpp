@@ -9,8 +9,7 @@ namespace withy::study {
 
 /// Looks for a reference that is exact enough for that accuracy, in its share of the evaluator's time. Sets the
 /// advice's yardstick, or else its trouble and nearest; all of them where only runs that are near the reference can
-/// hold the accuracy; and whether the user ended the search. \param finding may be
-/// empty
+/// hold the accuracy; and whether the user ended the search. \param finding may be empty
 std::vector<Reference> find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
                                       Advice& advice, const Finding& finding);
 

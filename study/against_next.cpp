@@ -16,7 +16,7 @@ SceneValues values_in(const Prepared& prepared, const std::string& formulation) 
   constexpr const char* origin = "the next model up";
   SceneValues values = prepared.values;
   for (const BodyNode& body : prepared.model().bodies())
-    if (body.terms) values.body_formulation(body.segment ? body.segment->whole : body.name, formulation, origin);
+    if (body.terms) values.body_formulation(body.scene_name(), formulation, origin);
   values.choose_formulation(formulation, origin);
   return values;
 }

@@ -16,9 +16,8 @@
 namespace withy::study {
 namespace {
 
-/// Bases that are complete for any clamped beam, whatever it carries. Where that is much, the tip's static shapes and
-/// modes with a fixed tip need fewer, and the fastest of n has a frequency like n², not n⁴.
-constexpr const char* polynomials = "orthogonal-polynomials";
+/// A basis that is complete for any clamped beam, whatever it carries. Where that is much, the tip's static shapes and
+/// modes with a fixed tip need fewer than polynomials, and the fastest of n has a frequency like n², not n⁴.
 constexpr const char* static_shapes = "craig-bampton";
 /// What stands for all formulations where no body is flexible: the one of scenes that name none.
 constexpr const char* plain_formulation = "quadratic";
@@ -186,7 +185,7 @@ ReferenceFamilies reference_families(const Candidates& candidates, const Prepare
 std::vector<std::string> flexible_bodies(const Scene& scene) {
   std::unordered_set<std::string> flexible;
   for (const BodyNode& b : scene.model->bodies())
-    if (b.body->shape().modes() > 0) flexible.insert(b.segment ? b.segment->whole : b.name);
+    if (b.body->shape().modes() > 0) flexible.insert(b.scene_name());
   std::vector<std::string> names;
   for (const auto& [name, body] : scene.source.at("bodies").members())
     if (flexible.contains(name)) names.push_back(name);

@@ -26,10 +26,8 @@ std::vector<std::size_t> common_speeds(const Model& model) {
 }
 
 bool symmetric_anywhere(const Scene& scene) {
-  const auto symmetric = [](const Terms& terms) { return terms.truncation == Truncation::symmetric; };
-  const auto& bodies = scene.model->bodies();
-  return symmetric(scene.formulation->terms()) ||
-         std::any_of(bodies.begin(), bodies.end(), [&](const BodyNode& b) { return b.terms && symmetric(*b.terms); });
+  const std::vector<Terms> terms = terms_in_use(scene);
+  return std::any_of(terms.begin(), terms.end(), [](const Terms& t) { return t.truncation == Truncation::symmetric; });
 }
 
 /// What equations make of a velocity: accelerations with it and without.

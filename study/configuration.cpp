@@ -5,21 +5,17 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <utility>
 
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
-#include "withy/core/model/limit_sensor.hpp"
 #include "withy/core/plugin/digital_part.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
-#include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/instants.hpp"
-#include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/check_loads.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/trees_alone.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {
@@ -199,11 +195,10 @@ std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, 
   for (const std::size_t s : hinge_speeds(layout)) {
     if (layout.speed_names[s] == name) return {s};
   }
-  std::string known;
-  for (const Slot& slot : layout.hinges) {
-    if (slot.speeds > 0) known += (known.empty() ? "" : ", ") + slot.name;
-  }
-  throw OptionError(what, fmt::format("no hinge '{}'; known: {}", name, known));
+  std::vector<std::string> known;
+  for (const Slot& slot : layout.hinges)
+    if (slot.speeds > 0) known.push_back(slot.name);
+  throw OptionError(what, fmt::format("no hinge '{}'; known: {}", name, fmt::join(known, ", ")));
 }
 
 std::vector<std::size_t> hinge_speeds(const Layout& layout) {
@@ -243,113 +238,10 @@ Holding read_holding(const Model& model, const std::vector<std::string>& lock, c
   return holding;
 }
 
-namespace {
-
-/// Names of the loads that are at a limit at a state: what a controller does there does not depend on what it measures.
-std::vector<std::string> at_limits(const Configuration& c, State state) {
-  const Model& model = c.prepared().model();
-  // Sampled ones tell of their last sample, and none has been taken there.
-  Renewal renewal(model, *c.prepared().equations);
-  renewal.at(state);
-  for (const LoadSlot& slot : sampled_slots(model)) renewal(state, slot, {});
-  std::vector<std::string> names;
-  for (std::size_t l = 0; l < model.loads().size(); ++l) {
-    const std::shared_ptr<const BoundSensor> sensor = limit_sensor(model, l);
-    if (sensor == nullptr) continue;
-    SensorReader reader({{model.loads()[l].name, sensor}}, *c.prepared().equations);
-    double beyond = 0;
-    if (reader.read(state, {&beyond, 1}) && beyond >= 0) names.push_back(model.loads()[l].name);
-  }
-  return names;
-}
-
-/// The first coordinate by which what acts has no finite derivative at a state; empty where there are all.
-std::string without_derivative(const Configuration& c, const State& state) {
-  const Eigen::MatrixXd by_position =
-      c.dynamics().stiffness(state.time, state.y, c.dynamics().steady_accelerations(state.time)).by_position;
-  for (const Eigen::Index s : free_speeds(c.held()))
-    if (!by_position.col(s).allFinite()) return c.layout().speed_names[static_cast<std::size_t>(s)];
-  return {};
-}
-
-}  // namespace
-
-NotFinite not_finite(const Configuration& c, const State& state) {
-  const Model& model = c.prepared().model();
-  for (const LoadNode& load : model.loads()) {
-    const auto* law = dynamic_cast<const ForeignLaw*>(load.load.get());
-    if (law == nullptr) continue;
-    const std::string words = law->failure(load.discrete(std::span(state.y)));
-    if (!words.empty()) return {fmt::format("load '{}': {}", load.name, words), true};
-  }
-  return {describe_nonfinite(model, *c.prepared().equations, state, 0)};
-}
-
-Eigen::VectorXd accelerations_of(const Configuration& c) {
-  try {
-    return withy::accelerations(c.dynamics(), c.state(), c.held());
-  } catch (const std::domain_error&) {
-    if (const NotFinite found = not_finite(c, c.state()); !found.text.empty()) throw std::domain_error(found.text);
-    throw;
-  }
-}
-
-std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
-  if (steady.converged) return {};
-  // What is left over is no number where a load gives none.
-  if (const NotFinite found = not_finite(c, steady.state); !found.text.empty())
-    return "no steady state was found: " + found.text;
-  if (const std::string name = without_derivative(c, steady.state); !name.empty())
-    return fmt::format(
-        "no steady state was found: the derivative of what acts by {} is not finite there, as that of a root at zero; "
-        "start from another state (--at)",
-        name);
-  std::string text = fmt::format("no steady state was found: after {} steps of Newton's method ", steady.iterations);
-  std::size_t worst = 0;
-  double left = 0;
-  for (std::size_t s = 0; s < c.held().size(); ++s) {
-    const double effort = std::abs(steady.efforts[static_cast<Eigen::Index>(s)]);
-    if (c.held()[s] || !(effort > left)) continue;
-    left = effort;
-    worst = s;
-  }
-  text += fmt::format("{:.3g} are left over on {}", left, c.layout().speed_names[worst]);
-  if (Eigen::Index state = 0; steady.rates.size() > 0) {
-    const double rate = steady.rates.cwiseAbs().maxCoeff(&state);
-    if (rate > 0)
-      text += fmt::format(", and {} changes by {:.3g} a second",
-                          c.layout().continuous_names[static_cast<std::size_t>(state)], rate);
-  }
-  if (Eigen::Index number = 0; steady.renewed.size() > 0) {
-    const double change = steady.renewed.cwiseAbs().maxCoeff(&number);
-    if (change > 0)
-      text += fmt::format(", and {} changes by {:.3g} with a sample",
-                          sampled_names(c.prepared().model())[static_cast<std::size_t>(number)], change);
-  }
-  if (const std::vector<std::string> limited = at_limits(c, steady.state); !limited.empty()) {
-    text += fmt::format(
-        "; '{}' {} at a limit there: start from a state nearer to a steady one (--at), as the run.json of "
-        "a run that settles",
-        fmt::join(limited, "', '"), limited.size() > 1 ? "are" : "is");
-  } else if (steady.neutral.size() > 0) {
-    // Where most of the work is done.
-    Eigen::VectorXd works = steady.neutral.cwiseProduct(steady.efforts).cwiseAbs();
-    if (!(works.maxCoeff() > 0)) works = steady.neutral.cwiseAbs();
-    Eigen::Index weakest = 0;
-    works.maxCoeff(&weakest);
-    text += fmt::format("; nothing holds {}: lock its hinge, give it a spring, or start from another state",
-                        c.layout().speed_names[static_cast<std::size_t>(weakest)]);
-  } else {
-    text += "; start from a state nearer to one (--at), or approach the load in steps (withy modes --sweep)";
-  }
-  return text;
-}
-
 std::string derivatives_text(const Tangents& tangents) {
   if (tangents.differenced.empty()) return "exact";
-  std::string names;
-  for (const std::string& n : tangents.differenced) names += (names.empty() ? "" : ", ") + n;
-  return "exact but for the loads " + names + ", by central differences of eighth order";
+  return fmt::format("exact but for the loads {}, by central differences of eighth order",
+                     fmt::join(tangents.differenced, ", "));
 }
 
 }  // namespace withy::study

@@ -7,6 +7,7 @@
 #include "withy/core/analysis/term_ledger.hpp"
 #include "withy/core/model/closing.hpp"
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/study/scene_terms.hpp"
 
 namespace withy::study {
 namespace {
@@ -44,34 +45,21 @@ struct Look {
 class Looks {
  public:
   Looks(const Prepared& prepared, const Beyond& beyond, const std::vector<CoordinateGroup>& groups, Registry& registry)
-      : prepared_(prepared),
-        beyond_(beyond),
-        groups_(groups),
-        rates_(prepared.equations->size()),
-        work_(prepared.equations->make_work()) {
-    for (const char* id : {"ruthless", "inconsistent", "consistent", "quadratic"})
-      compiled_.push_back(compile_throughout(prepared, registry, id));
-    const State& start = prepared.scene.initial;
-    const DenseSystem s = compiled_[0].equations->system(start.time, start.y);
-    for (std::size_t i = 0; i < s.size; ++i) inertias_.push_back(s.mass[i * (s.size + 1)]);
-  }
+      : prepared_(prepared), beyond_(beyond), groups_(groups), terms_(prepared, registry) {}
   /// Nothing where the equations have no accelerations.
   std::optional<Look> at(const State& state) {
-    const Layout& layout = prepared_.model().layout();
-    if (!prepared_.equations->derivatives(state.time, state.y, rates_, work_).ok()) return {};
-    const auto a = std::span<const double>(rates_).subspan(layout.positions, layout.speeds);
-    std::vector<double> missing = force_balance(*beyond_.equations, state, a);
-    const std::vector<double> ours = force_balance(*prepared_.equations, state, a);
+    const auto a = terms_.accelerations(state);
+    if (!a) return {};
+    std::vector<double> missing = force_balance(*beyond_.equations, state, *a);
+    const std::vector<double> ours = force_balance(*prepared_.equations, state, *a);
     for (std::size_t i = 0; i < missing.size(); ++i) missing[i] -= ours[i];
-    const TermLedger ledger(*compiled_[0].model, {compiled_[0].equations.get(), compiled_[1].equations.get(),
-                                                  compiled_[2].equations.get(), compiled_[3].equations.get()});
-    const TermForces forces = ledger.evaluate(state, a);
+    const TermForces forces = terms_.forces(state, *a);
     Look look{state.time, {}};
     for (const CoordinateGroup& group : groups_) {
       Squares& squares = look.groups.emplace_back();
-      squares.all = std::pow(size_of(missing, group, inertias_), 2);
+      squares.all = std::pow(size_of(missing, group, terms_.inertias()), 2);
       for (std::size_t k = 0; k < terms_of_motion; ++k)
-        squares.terms.at(k) = std::pow(size_of(forces.at(k), group, inertias_), 2);
+        squares.terms.at(k) = std::pow(size_of(forces.at(k), group, terms_.inertias()), 2);
     }
     return look;
   }
@@ -80,9 +68,7 @@ class Looks {
   const Prepared& prepared_;
   const Beyond& beyond_;
   const std::vector<CoordinateGroup>& groups_;
-  std::vector<Beyond> compiled_;  ///< what terms are the differences of
-  std::vector<double> inertias_, rates_;
-  Work work_;
+  SceneTerms terms_;
 };
 
 /// The integral over time by the trapezoidal rule, and which term is the greatest.

@@ -7,7 +7,7 @@
 
 #include "withy/core/analysis/turn.hpp"
 #include "withy/core/plugin/equations.hpp"
-#include "withy/study/states_of_loads.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {

@@ -9,6 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "withy/study/load_efforts.hpp"
+
 namespace withy::study {
 namespace {
 
@@ -87,11 +89,7 @@ Found fastest_period(const Course& course, double start, double longest) {
 }
 
 Course efforts_of(const Prepared& prepared, const State& state, int load, Work& work) {
-  return [&prepared, &state, load, &work](double t) {
-    std::vector<double> efforts(prepared.model().layout().speeds);
-    prepared.equations->load_efforts(t, state.y, load, efforts, work);
-    return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(efforts.data(), static_cast<Eigen::Index>(efforts.size())));
-  };
+  return [&prepared, &state, load, &work](double t) { return load_efforts(*prepared.equations, t, state, load, work); };
 }
 
 Course accelerations_of(const Motion& motion) {

@@ -8,7 +8,7 @@
 
 #include "withy/study/input_error.hpp"
 #include "withy/study/reference.hpp"
-#include "withy/study/states_of_loads.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {

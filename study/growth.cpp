@@ -46,6 +46,21 @@ Strength weakest_body(const Model& model) {
   return weakest;
 }
 
+/// A speed of a hinge.
+struct HingeSpeed {
+  std::size_t speed = 0;
+  bool angular = false;
+};
+
+std::vector<HingeSpeed> speeds_of_hinges(const Model& model) {
+  std::vector<HingeSpeed> all;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    std::size_t speed = model.layout().hinges[h].speed;
+    for (const HingeRate& rate : hinge_rates(*model.hinges()[h].hinge)) all.push_back({speed++, rate.angular});
+  }
+  return all;
+}
+
 /// The load that pushes a hinge hardest at one of some times, where that is more than what bends the weakest body by
 /// its length: no such motion is one of this structure.
 std::string wild_load(const Prepared& prepared, const State& state, std::initializer_list<double> times) {
@@ -53,25 +68,21 @@ std::string wild_load(const Prepared& prepared, const State& state, std::initial
   const Strength strength = weakest_body(model);
   if (!std::isfinite(strength.moment)) return {};
   Work work = prepared.equations->make_work();
+  const std::vector<HingeSpeed> speeds = speeds_of_hinges(model);
   double most = 1;
   std::string text;
   for (const double t : times) {
     for (std::size_t l = 0; l < model.loads().size(); ++l) {
       std::vector<double> efforts(model.layout().speeds);
       prepared.equations->load_efforts(t, state.y, static_cast<int>(l), efforts, work);
-      for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-        const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-        for (std::size_t i = 0; i < rates.size(); ++i) {
-          const std::size_t speed = model.layout().hinges[h].speed + i;
-          const double times_strength =
-              std::abs(efforts[speed]) / (rates[i].angular ? strength.moment : strength.force);
-          if (!(times_strength > most)) continue;
-          most = times_strength;
-          text = fmt::format(
-              " Load '{}' gives {:.3g} {} on {} at t = {:.4g} s, {:.2g} times what bends '{}' by its length.",
-              model.loads()[l].name, efforts[speed], rates[i].angular ? "N m" : "N", model.layout().speed_names[speed],
-              t, most, model.bodies()[strength.body].name);
-        }
+      for (const auto& [speed, angular] : speeds) {
+        const double times_strength = std::abs(efforts[speed]) / (angular ? strength.moment : strength.force);
+        if (!(times_strength > most)) continue;
+        most = times_strength;
+        text =
+            fmt::format(" Load '{}' gives {:.3g} {} on {} at t = {:.4g} s, {:.2g} times what bends '{}' by its length.",
+                        model.loads()[l].name, efforts[speed], angular ? "N m" : "N", model.layout().speed_names[speed],
+                        t, most, model.bodies()[strength.body].name);
       }
     }
   }
@@ -94,17 +105,14 @@ std::string emptied_hinges(const Prepared& prepared, const State& state) {
   const DenseSystem now = prepared.equations->system(state.time, state.y),
                     first = prepared.equations->system(initial.time, initial.y);
   std::string text;
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-    for (std::size_t i = 0; i < rates.size(); ++i) {
-      const std::size_t speed = model.layout().hinges[h].speed + i, at = speed * (now.size + 1);
-      const double left = now.mass[at], had = first.mass[at];
-      if (!(had > 0 && left < next_to_nothing * had)) continue;
-      text += fmt::format(
-          " There {} moves {:.2g} {}, {:.2g} times what it moved at the start: the mass that it carries is "
-          "on its axis, and nothing limits its rate.",
-          model.layout().speed_names[speed], left, rates[i].angular ? "kg m^2" : "kg", left / had);
-    }
+  for (const auto& [speed, angular] : speeds_of_hinges(model)) {
+    const std::size_t at = speed * (now.size + 1);
+    const double left = now.mass[at], had = first.mass[at];
+    if (!(had > 0 && left < next_to_nothing * had)) continue;
+    text += fmt::format(
+        " There {} moves {:.2g} {}, {:.2g} times what it moved at the start: the mass that it carries is on its axis, "
+        "and nothing limits its rate.",
+        model.layout().speed_names[speed], left, angular ? "kg m^2" : "kg", left / had);
   }
   return text;
 }

@@ -8,7 +8,6 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "withy/core/shape/held_section.hpp"
 #include "withy/core/shape/vibrations.hpp"
@@ -17,12 +16,6 @@
 
 namespace withy::study {
 namespace {
-
-/// Of a frequency: less is hardly worth a word.
-constexpr double notably_faster_held = 0.015;
-/// Functions that bend freely at either end: they have the moment at a clamp wherever it is.
-constexpr const char* free_at_the_tip = "orthogonal-polynomials";
-constexpr std::size_t most_held_functions = 100;  ///< that polynomials have
 
 /// Whether all turns that modes give a section are held: it is clamped.
 bool is_clamped(const HeldSection& at) { return (at.held * at.at.psi - at.at.psi).isZero(1e-9 * at.at.psi.norm()); }
@@ -35,28 +28,16 @@ double first_hertz(const Body& body, const HeldSection& at, Eigen::Index from, E
   return std::sqrt(vibrations(K, G).squares[0]) / (2 * std::numbers::pi);
 }
 
-/// "2 bending_y modes of clamped-free vibrate first at 9.342 Hz, as many of orthogonal-polynomials at 5.623 Hz", strain
-/// by strain; empty where the body's functions do about as well.
+/// Where polynomials bend notably better; empty where the body's functions do about as well.
 std::string of_held_strains(const Scene& scene, const BodyModes& modes, const Body& body, const HeldSection& at,
                             Registry& registry) {
-  std::string text;
-  Eigen::Index from = 0;
-  for (const ModeCount& count : modes.counts) {
-    const auto n = static_cast<Eigen::Index>(count.modes), first = std::exchange(from, from + n);
-    if (n == 0 || count.modes > most_held_functions || count.family_path.empty() ||
-        count.family_id() == free_at_the_tip)
-      continue;
-    const auto other =
-        body_with(scene, modes.body, {{count.family_path, Value(std::string(free_at_the_tip))}}, registry);
-    if (other == nullptr || other->shape().modes() != body.shape().modes()) continue;
-    const std::optional<PointExpansion> section = other->station(at.at.X.x());
-    if (!section) continue;
-    const double has = first_hertz(body, at, first, n), could = first_hertz(*other, {*section, at.held}, first, n);
-    if (!(has > (1 + notably_faster_held) * could)) continue;
-    text += fmt::format("{}{} {} modes of {} vibrate first at {:.4g} Hz, as many of {} at {:.4g} Hz",
-                        text.empty() ? "" : "; ", n, count.strain, count.family_id(), has, free_at_the_tip, could);
-  }
-  return text;
+  const auto held_hertz = [&](const Body& of, Eigen::Index first, Eigen::Index count) {
+    if (&of == &body) return first_hertz(body, at, first, count);
+    const std::optional<PointExpansion> section = of.station(at.at.X.x());
+    return section ? first_hertz(of, {*section, at.held}, first, count) : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto there_are_as_many = [](const ModeCount& count) { return count.modes <= most_polynomials; };
+  return notably_faster_strains(scene, modes, body, {polynomials, there_are_as_many, held_hertz}, registry);
 }
 
 /// A beam's sections are one with its root, but functions that are made for a clamped root and a free tip have no

@@ -10,6 +10,7 @@
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/scene/scene.hpp"
+#include "withy/study/prepared.hpp"
 
 namespace withy::study {
 
@@ -48,5 +49,9 @@ void add_in_place(std::vector<Indicator>& indicators, Indicator indicator);
 /// Adds the error that rounding leaves the accelerations at a state, where that is a number. \returns it
 std::optional<double> add_rounding(std::vector<Indicator>& indicators, const Model& model,
                                    const EquationsOfMotion& equations, const State& state);
+
+/// Of a run that begins at a state and ends there: what the motion makes of it later is not in them. None where no run
+/// can begin at the state.
+std::vector<Indicator> indicators_at(const Prepared& prepared, const State& state);
 
 }  // namespace withy::study

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/trees_alone.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 
@@ -16,10 +16,8 @@ InverseStudy::InverseStudy(const Prepared& prepared)
   for (const MotionNode& motion : model.motions()) {
     const auto h = static_cast<std::size_t>(motion.hinge);
     const Slot& slot = model.layout().hinges[h];
-    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-    for (std::size_t i = 0; i < slot.speeds; ++i)
-      drives_.push_back(
-          {model.layout().speed_names[slot.speed + i], rates[i].angular ? "N m" : "N", slot.speed + i, {}, {}});
+    for (std::size_t s = slot.speed; s < slot.speed + slot.speeds; ++s)
+      drives_.push_back({model.layout().speed_names[s], unit_of_effort(model, s), s, {}, {}});
   }
   if (drives_.empty())
     throw InputError(prepared.scene.file +

@@ -1,5 +1,9 @@
 #include "withy/study/left_out.hpp"
 
+#include <fmt/format.h>
+
+#include <vector>
+
 #include "withy/core/plugin/formulation.hpp"
 
 namespace withy::study {
@@ -36,12 +40,12 @@ std::string left_out(const Terms& terms) {
 
 std::string left_out(const ModelAt& model) {
   if (!flexible(model.prepared->model())) return "nothing: no body is flexible";
-  std::string text = left_out(model.prepared->scene.formulation->terms());
-  std::string bodies;
-  for (const auto& own : model.point.bodies) bodies += (bodies.empty() ? "; of " : ", ") + own.first;
-  if (bodies.empty()) return text;
+  const std::string text = left_out(model.prepared->scene.formulation->terms());
+  if (model.point.bodies.empty()) return text;
+  std::vector<std::string> bodies;
+  for (const auto& [body, formulation] : model.point.bodies) bodies.push_back(body);
   const Terms least{StrainOrder::linear, Truncation::ruthless};  // bodies have no other formulation of their own
-  return text + bodies + " " + left_out(least);
+  return fmt::format("{}; of {} {}", text, fmt::join(bodies, ", "), left_out(least));
 }
 
 }  // namespace withy::study

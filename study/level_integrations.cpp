@@ -117,9 +117,8 @@ std::optional<Reference> LevelIntegrations::confirm(Reference& level, const Run&
 }
 
 void LevelIntegrations::note(const Reference& run) {
-  for (LevelIntegration& with : all_)
-    if (with.integrator == run.point.integrator && with.tolerance == run.point.tolerance)
-      with.evaluations[run.point.modes] = static_cast<double>(run.walk.evaluations);
+  if (LevelIntegration* const with = of(run.point))
+    with->evaluations[run.point.modes] = static_cast<double>(run.walk.evaluations);
 }
 
 double LevelIntegrations::expected_seconds(const Point& point) const {

@@ -1,8 +1,10 @@
 #include "withy/study/linear_inputs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
-#include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -25,15 +27,11 @@ LinearInput input_of_load(const SmallMotions& motions, std::size_t load) {
 }
 
 LinearInput input_of_speed(const SmallMotions& motions, std::size_t speed) {
-  const Layout& layout = motions.model().layout();
-  std::string unit;
-  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
-    const Slot& slot = layout.hinges[h];
-    if (speed >= slot.speed && speed < slot.speed + slot.speeds)
-      unit = hinge_rates(*motions.model().hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
-  }
+  const Model& model = motions.model();
   const Eigen::VectorXd one = Eigen::VectorXd::Unit(motions.by_effort().cols(), static_cast<Eigen::Index>(speed));
-  return {{layout.speed_names[speed], unit}, one, [&motions, one](double h) { return motions.pushed(h * one); }};
+  return {{model.layout().speed_names[speed], unit_of_effort(model, speed)}, one, [&motions, one](double h) {
+            return motions.pushed(h * one);
+          }};
 }
 
 std::vector<std::size_t> input_loads(const Model& model) {
@@ -51,10 +49,12 @@ std::vector<std::size_t> named_speeds(const Configuration& c, const std::string&
   try {
     speeds = speeds_of(model, name, "inputs");
   } catch (const OptionError& e) {
-    std::string inputs;
-    for (const std::size_t l : input_loads(model)) inputs += (inputs.empty() ? "" : ", ") + model.loads()[l].name;
+    std::vector<std::string> inputs;
+    for (const std::size_t l : input_loads(model)) inputs.push_back(model.loads()[l].name);
     const std::string problem = std::string(e.what()).substr(std::string("inputs: ").size());
-    throw OptionError("inputs", problem + (inputs.empty() ? "" : "; loads of the type input: " + inputs));
+    throw OptionError("inputs", inputs.empty()
+                                    ? problem
+                                    : fmt::format("{}; loads of the type input: {}", problem, fmt::join(inputs, ", ")));
   }
   for (const std::size_t s : speeds)
     if (c.held()[s]) throw OptionError("inputs", c.layout().speed_names[s] + " is held: no effort moves it");

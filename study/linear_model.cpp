@@ -29,11 +29,7 @@ bool no_mode_moves(const Configuration& c) {
   return true;
 }
 
-std::string quoted_list(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += fmt::format("{}'{}'", text.empty() ? "" : ", ", name);
-  return text;
-}
+std::string quoted_list(const std::vector<std::string>& names) { return fmt::format("'{}'", fmt::join(names, "', '")); }
 
 /// Whether motions move their hinges: what begins to move is where it is.
 bool motions_move(const Configuration& c) {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "withy/core/model/columns.hpp"
-#include "withy/core/model/hinge_rates.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -28,11 +27,6 @@ std::string tip_name(const Tip& tip, bool deflection) {
 bool has_place(const Tip& tip) { return tip.station == "tip"; }
 
 std::string effort_name(const HingeNode& hinge) { return hinge.name + ".motion_effort"; }
-
-/// "cross.1" of several, the name of one.
-std::string numbered(const std::string& name, std::size_t i, std::size_t count) {
-  return count > 1 ? name + '.' + std::to_string(i) : name;
-}
 
 double longest_body(const Model& model) {
   double longest = 0;
@@ -276,19 +270,19 @@ void Outputs::add_hinge(const Model& model, std::size_t hinge) {
          .index = hinge,
          .coordinate = c,
          .floor = hardly * (slides ? length_ : 1),
-         .label = numbered(node.name, c, columns.size())});
+         .label = columns[c].name});
   }
 }
 
 void Outputs::add_effort(const Model& model, std::size_t hinge) {
   const HingeNode& node = model.hinges()[hinge];
-  const std::vector<HingeRate> rates = hinge_rates(*node.hinge);
-  for (std::size_t i = 0; i < rates.size(); ++i)
+  const std::vector<Column> columns = motion_effort_columns(node);
+  for (std::size_t i = 0; i < columns.size(); ++i)
     add({.name = effort_name(node),
-         .measure = rates[i].angular ? Measure::moment : Measure::force,
+         .measure = columns[i].unit == "N m" ? Measure::moment : Measure::force,
          .index = hinge,
          .coordinate = i,
-         .label = numbered(effort_name(node), i, rates.size())});
+         .label = columns[i].name});
 }
 
 std::vector<std::string> Outputs::names() const {

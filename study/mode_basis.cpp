@@ -1,23 +1,17 @@
 #include "withy/study/mode_basis.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/scene/value_path.hpp"
 
 namespace withy::study {
 namespace {
-
-const Value* value_below(const Value& map, const std::string& path) {
-  const Value* at = &map;
-  for (std::size_t begin = 0; at != nullptr && begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    at = at->kind() == Value::Kind::map ? at->find(path.substr(begin, end - begin)) : nullptr;
-    begin = end + 1;
-  }
-  return at;
-}
 
 void set_below(Value& map, const std::string& path, const Value& value) {
   const std::size_t dot = path.find('.');
@@ -78,7 +72,7 @@ bool spans_cantilevers(const Value& family, Registry& registry) {
 
 std::string family_path(const Scene& scene, const std::string& body, const ModeCount& count, Registry& registry) {
   if (!count.family_path.empty() || count.strain.empty()) return count.family_path;
-  const Value* value = value_below(scene.source, "bodies." + body);
+  const Value* value = value_at(scene.source, "bodies." + body);
   const Plugin<Body>* plugin = value != nullptr ? plugin_of(*value, registry) : nullptr;
   if (plugin == nullptr) return {};
   for (const ParameterSpec& strain : plugin->parameters) {
@@ -90,17 +84,17 @@ std::string family_path(const Scene& scene, const std::string& body, const ModeC
 }
 
 const Value* family_at(const Scene& scene, const std::string& body, const std::string& path) {
-  return path.empty() ? nullptr : value_below(scene.source, "bodies." + body + '.' + path);
+  return path.empty() ? nullptr : value_at(scene.source, "bodies." + body + '.' + path);
 }
 
 bool varies(const Scene& scene, const std::string& body) {
-  const Value* given = value_below(scene.source, "bodies." + body);
+  const Value* given = value_at(scene.source, "bodies." + body);
   return given != nullptr && has_table(*given);
 }
 
 std::shared_ptr<const Body> body_with(const Scene& scene, const std::string& body,
                                       const std::vector<std::pair<std::string, Value>>& values, Registry& registry) {
-  const Value* given = value_below(scene.source, "bodies." + body);
+  const Value* given = value_at(scene.source, "bodies." + body);
   const Plugin<Body>* plugin = given != nullptr ? plugin_of(*given, registry) : nullptr;
   if (plugin == nullptr) return nullptr;
   Value changed = *given;
@@ -118,6 +112,24 @@ std::optional<std::vector<double>> same_shape(const Body& from, std::span<const 
   const Eigen::VectorXd wanted = fields_along(from, length, sections) * given;
   const Eigen::VectorXd found = fields_along(to, length, sections).colPivHouseholderQr().solve(wanted);
   return std::vector<double>(found.begin(), found.end());
+}
+
+std::string notably_faster_strains(const Scene& scene, const BodyModes& modes, const Body& body,
+                                   const OtherFamily& other, Registry& registry) {
+  constexpr double notably_faster = 0.015;  // of a frequency: less is hardly worth a word
+  std::string text;
+  Eigen::Index from = 0;
+  for (const ModeCount& count : modes.counts) {
+    const auto n = static_cast<Eigen::Index>(count.modes), first = std::exchange(from, from + n);
+    if (n == 0 || count.family_path.empty() || count.family_id() == other.family || !other.compared(count)) continue;
+    const auto with_other = body_with(scene, modes.body, {{count.family_path, Value(other.family)}}, registry);
+    if (with_other == nullptr || with_other->shape().modes() != body.shape().modes()) continue;
+    const double has = other.first_hertz(body, first, n), could = other.first_hertz(*with_other, first, n);
+    if (!(has > (1 + notably_faster) * could)) continue;
+    text += fmt::format("{}{} {} modes of {} vibrate first at {:.4g} Hz, as many of {} at {:.4g} Hz",
+                        text.empty() ? "" : "; ", n, count.strain, count.family_id(), has, other.family, could);
+  }
+  return text;
 }
 
 }  // namespace withy::study

@@ -22,9 +22,9 @@ struct Sweep {
   std::vector<double> values{0.0};
   std::string unit = {};  ///< of the values, as the scene writes it; empty: SI
   [[nodiscard]] bool none() const { return path.empty(); }
-  /// The hinge of `spin.hinge`; empty for a path of the scene.
   /// A value as a scene writes it, "3.75 rpm".
   [[nodiscard]] std::string text(double value) const;
+  /// The hinge of `spin.hinge`; empty for a path of the scene.
   [[nodiscard]] std::string spun() const { return path.starts_with("spin.") ? path.substr(5) : ""; }
   /// Of the values, to be shown: that of `unit`, of a rate without one rad/s; empty: the SI unit of what is swept.
   [[nodiscard]] std::string shown_unit() const { return unit.empty() && !spun().empty() ? "rad/s" : unit; }

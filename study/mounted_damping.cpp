@@ -12,7 +12,7 @@
 #include "withy/core/shape/vibrations.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/states_of_loads.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {
@@ -210,8 +210,7 @@ MountedDamping mounted_damping(const Configuration& c, Registry& registry, const
   Index column = 0;
   for (const Damped& d : bodies) {
     std::vector<std::pair<Index, double>> own;
-    for (Index mode = 1; mode <= d.modes; ++mode)
-      own.emplace_back(mode, std::stod(fmt::format("{:.4g}", found[column++])));
+    for (Index mode = 1; mode <= d.modes; ++mode) own.emplace_back(mode, to_digits(found[column++], 4));
     result.changes.push_back(ratios_of(d.name, own));
     result.changes.push_back({"bodies." + d.name + ".damping_ratio", Value(0.0)});
   }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "withy/study/load_efforts.hpp"
 #include "withy/study/timed_loads.hpp"
 
 namespace withy::study {
@@ -74,9 +75,7 @@ class EffortsOverATurn {
     return asked == Change::any ? by.maxCoeff() : by.head(by.size() / 2).maxCoeff();
   }
   Eigen::VectorXd efforts(double time, const State& state, int load) {
-    std::vector<double> on(c_.layout().speeds);
-    c_.prepared().equations->load_efforts(time, state.y, load, on, work_);
-    return Eigen::Map<const Eigen::VectorXd>(on.data(), static_cast<Eigen::Index>(on.size()))(free_);
+    return load_efforts(*c_.prepared().equations, time, state, load, work_)(free_);
   }
 
   const Configuration& c_;

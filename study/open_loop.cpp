@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/linear_parts.hpp"
 #include "withy/study/turning_ends.hpp"
@@ -64,13 +64,11 @@ struct Answer {
   std::string unit;  ///< of the effort where there is one alone; else empty
 };
 
-std::string unit_of_speed(const Model& model, std::size_t speed) {
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const Slot& slot = model.layout().hinges[h];
-    if (speed >= slot.speed && speed < slot.speed + slot.speeds)
-      return hinge_rates(*model.hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
-  }
-  return "";
+/// Whether all rows of a matrix that is not zero are one row, times a number each.
+bool in_one_proportion(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd) {
+  constexpr double rounding = 1e-9;
+  const Eigen::VectorXd& singular = svd.singularValues();
+  return singular.size() < 2 || !(singular[1] > rounding * singular[0]);
 }
 
 /// Takes the slopes of a load's efforts apart. \param hinge that the loop is opened at; empty: at all efforts
@@ -81,22 +79,22 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
   if (!hinge.empty() && slot == nullptr)
     throw OptionError("input", "no hinge '" + hinge + "' that load '" + name + "' could act on");
   Eigen::MatrixXd slopes = all;
-  std::string names;
+  std::vector<std::string> names;
   std::vector<std::size_t> speeds;
   for (std::size_t s = 0; s < c.layout().speeds; ++s) {
     const auto row = static_cast<Eigen::Index>(s);
     const bool here = slot == nullptr || (s >= slot->speed && s < slot->speed + slot->speeds);
     if (!here || c.held()[s]) slopes.row(row).setZero();
     if (slopes.row(row).isZero(0)) continue;
-    names += (names.empty() ? "" : ", ") + c.layout().speed_names[s];
+    names.push_back(c.layout().speed_names[s]);
     speeds.push_back(s);
   }
   if (speeds.empty()) throw nothing_fed_back(name);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
-    throw OptionError("input",
-                      "load '" + name + "' feeds back to " + names + "; name one hinge, as " + name + ".HINGE");
-  Answer answer{svd.matrixU().col(0), {}, speeds.size() == 1 ? unit_of_speed(c.prepared().model(), speeds[0]) : ""};
+  if (!in_one_proportion(svd))
+    throw OptionError("input", fmt::format("load '{0}' feeds back to {1}; name one hinge, as {0}.HINGE", name,
+                                           fmt::join(names, ", ")));
+  Answer answer{svd.matrixU().col(0), {}, speeds.size() == 1 ? unit_of_effort(c.prepared().model(), speeds[0]) : ""};
   Eigen::Index greatest = 0;
   answer.along.cwiseAbs().maxCoeff(&greatest);
   answer.along /= answer.along[greatest];
@@ -116,7 +114,7 @@ Command command_of(SampledLoads& sampled, std::size_t load, const std::string& n
   const Eigen::MatrixXd moved = sampled.moved(sampled.efforts()).middleCols(first, count);
   if (moved.isZero(0)) throw nothing_fed_back(name);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(moved, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
+  if (!in_one_proportion(svd))
     throw OptionError("input", "load '" + name + "' gives several commands, through which it acts on several loads");
   if (sampled.measured_by_others(load))
     throw OptionError("input", "load '" + name +
@@ -128,6 +126,19 @@ Command command_of(SampledLoads& sampled, std::size_t load, const std::string& n
   row /= row[greatest];  // the command is one of the numbers held
   const Eigen::VectorXd one = row.transpose() / row.squaredNorm();
   return {{sampled.efforts().middleCols(first, count) * one, row, ""}, moved * one};
+}
+
+/// \throws InputError where other loads are sampled at instants that are none of the load's
+void require_its_period_is_common(const SampledLoads& sampled, std::size_t load, const std::string& name) {
+  const double period = sampled.period_of(load);
+  if (!(period > 0) && !sampled.none())
+    throw OptionError("input",
+                      "the loop of '" + name + "', which acts without pause, cannot be opened beside sampled ones");
+  if (period > 0 && std::abs(period - sampled.period()) > 1e-9 * sampled.period())
+    throw OptionError(
+        "input", fmt::format("load '{}' is sampled each {:g} s, and all loads together repeat each {:g} s: only the "
+                             "loop of a load that is sampled that seldom can be opened",
+                             name, period, sampled.period()));
 }
 
 /// What stands in the place of a load's answer. Of a sampled load at frames, or that acts through others, it is what
@@ -164,14 +175,7 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
   const auto [load, hinge] = load_and_hinge(model, name);
   SampledLoads sampled(motions);
   const bool is_sampled = sampled.period_of(load) > 0;
-  if (!is_sampled && !sampled.none())
-    throw OptionError("input",
-                      "the loop of '" + name + "', which acts without pause, cannot be opened beside sampled ones");
-  if (is_sampled && std::abs(sampled.period_of(load) - sampled.period()) > 1e-9 * sampled.period())
-    throw OptionError(
-        "input", fmt::format("load '{}' is sampled each {:g} s, and all loads together repeat each {:g} s: only the "
-                             "loop of a load that is sampled that seldom can be opened",
-                             name, sampled.period_of(load), sampled.period()));
+  require_its_period_is_common(sampled, load, name);
   const auto [first, count] = sampled.held_by(load);
   const bool is_command = is_sampled && hinge.empty() && sampled.own_efforts().middleCols(first, count).isZero(0);
   FedBack all;

@@ -16,6 +16,7 @@
 #include "withy/study/fast_course.hpp"
 #include "withy/study/held_places.hpp"
 #include "withy/study/step_limit.hpp"
+#include "withy/study/tip_load.hpp"
 #include "withy/study/tip_moments.hpp"
 #include "withy/study/varying_sections.hpp"
 #include "withy/study/written_angles.hpp"
@@ -30,22 +31,6 @@ constexpr double short_enough = 100, heavy_enough = 1e4;
 constexpr double stiff_enough = 10;
 /// Times the longest stable step: a little damping moves that.
 constexpr double too_long = 1.05;
-
-double mass_of_body(const Body& body) {
-  double mass = 0;
-  for (const Particle& p : body.shape().particles) mass += p.mass;
-  return mass;
-}
-
-/// Of each body, the mass of all that hangs on it, without itself.
-std::vector<double> carried(const Model& model) {
-  std::vector<double> masses(model.bodies().size());
-  for (std::size_t b = masses.size(); b-- > 0;) {
-    const int parent = model.hinges()[b].parent;
-    if (parent >= 0) masses[static_cast<std::size_t>(parent)] += masses[b] + mass_of_body(*model.bodies()[b].body);
-  }
-  return masses;
-}
 
 /// A box round points, along the axes of the world.
 struct Box {
@@ -69,7 +54,7 @@ Extent extent(const Prepared& prepared) {
   std::map<std::string, Box> bodies;
   for (std::size_t b = 0; b < prepared.model().bodies().size(); ++b) {
     const BodyNode& node = prepared.model().bodies()[b];
-    Box& own = bodies[node.segment ? node.segment->whole : node.name];
+    Box& own = bodies[node.scene_name()];
     for (std::size_t f = 0; f < node.frames.size(); ++f) {
       const WorldPose pose = seen->frame_pose(static_cast<int>(b), static_cast<int>(f));
       const Vector3 p = Eigen::Map<const Vector3>(pose.position.data());
@@ -103,24 +88,24 @@ bool forgets_mass(const ModalShape& shape, double mass) {
 void look_at_bodies(const Prepared& prepared, std::vector<Remark>& all) {
   const Model& model = prepared.model();
   const Extent tree = extent(prepared);
-  const std::vector<double> masses = carried(model);
+  const BodyMasses masses = masses_of(model);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
     if (node.segment && node.segment->index > 0) continue;
-    const std::string& name = node.segment ? node.segment->whole : node.name;
+    const std::string& name = node.scene_name();
     const Place place = place_in_scene(prepared.scene, "bodies", name);
     for (const std::string& remark : node.body->remarks()) all.push_back({place, remark});
     const ModalShape& shape = node.body->shape();
-    const double own = mass_of_body(*node.body);
+    const double own = masses.own[b], carried = masses.carried[b];
     if (forgets_mass(shape, own))
       all.push_back({place,
                      "an inertia and a mass of 0 kg, which no body has: is the mass forgotten? The inertia of a rotor "
                      "behind a gear is the hinge's reflected_inertia"});
     if (shape.modes() == 0 || !(shape.length > 0) || node.segment) continue;
     if (shape.length * short_enough < tree.all) all.push_back({place, short_beside(shape.length, tree)});
-    if (own * heavy_enough < masses[b])
+    if (own * heavy_enough < carried)
       all.push_back({place, fmt::format("a flexible body of {} kg carries {} kg: are its length and its mass meant?",
-                                        brief(own), brief(masses[b]))});
+                                        brief(own), brief(carried))});
   }
 }
 

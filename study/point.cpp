@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <functional>
 #include <numeric>
 #include <string_view>
 
 #include "withy/scene/one_line.hpp"
+#include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/mode_basis.hpp"
 #include "withy/study/tip_load.hpp"
@@ -170,12 +170,7 @@ bool Point::same_model(const Point& other) const {
          over == other.over;
 }
 
-double absolute_tolerance(double relative) {
-  const std::string text = fmt::format("{:g}", 1e-2 * relative);
-  double rounded = 0;
-  std::from_chars(text.data(), text.data() + text.size(), rounded);
-  return rounded;
-}
+double absolute_tolerance(double relative) { return to_digits(1e-2 * relative, 6); }
 
 void check_axes(const Axes& axes) {
   for (const int m : axes.modes)

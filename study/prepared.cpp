@@ -55,10 +55,8 @@ double drift_limit(const Scene& scene) {
     return (t.truncation == Truncation::none || (t.truncation == Truncation::symmetric && weightless)) &&
            t.products_of_speeds;
   };
-  const auto& bodies = scene.model->bodies();
-  const bool all =
-      scene.formulation_name != "auto" && conserves(scene.formulation->terms()) &&
-      std::all_of(bodies.begin(), bodies.end(), [&](const BodyNode& b) { return !b.terms || conserves(*b.terms); });
+  const std::vector<Terms> terms = terms_in_use(scene);
+  const bool all = scene.formulation_name != "auto" && std::all_of(terms.begin(), terms.end(), conserves);
   if (!all && flexible(*scene.model)) return std::numeric_limits<double>::infinity();
   const Value* rtol = scene.source.at("integrator").find("rtol");
   return rtol != nullptr ? std::clamp(of_tolerance * rtol->number(), least, most) : least;
@@ -144,6 +142,13 @@ std::string use_threads(Prepared& prepared, std::size_t threads) {
   return branched.refusal;
 }
 
+std::vector<Terms> terms_in_use(const Scene& scene) {
+  std::vector<Terms> all{scene.formulation->terms()};
+  for (const BodyNode& body : scene.model->bodies())
+    if (body.terms) all.push_back(*body.terms);
+  return all;
+}
+
 bool has_own_energy(const Scene& scene) { return scene.formulation->terms().truncation == Truncation::symmetric; }
 
 RunOptions run_options(const Scene& scene) {
@@ -180,7 +185,7 @@ Beyond compile_throughout(const Prepared& prepared, Registry& registry, const st
     return {formulation, scene.model, compile_model(*make_formulation(registry, formulation), scene.model), false};
   SceneValues values = prepared.values;
   for (const BodyNode& body : bodies) {
-    const std::string& name = body.segment ? body.segment->whole : body.name;
+    const std::string& name = body.scene_name();
     if (body.terms) values.body_formulation(name, formulation, "every body in one formulation");
   }
   const Scene all = make_scene(values.choose_formulation(formulation, "every body in one formulation"), registry);

@@ -10,6 +10,7 @@
 
 #include "withy/core/equations/branch_equations.hpp"
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/terms.hpp"
 #include "withy/core/simulation/rungs.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene.hpp"
@@ -52,6 +53,8 @@ std::string use_threads(Prepared& prepared, std::size_t threads);
 
 /// How a run of the scene goes: its end, outputs, limits and events. \throws SceneError where it has no end.
 RunOptions run_options(const Scene& scene);
+/// What the scene's formulation keeps, then what those of single bodies do.
+std::vector<Terms> terms_in_use(const Scene& scene);
 /// Whether its energy is truncated as its equations are (RunOptions::own_energy).
 bool has_own_energy(const Scene& scene);
 

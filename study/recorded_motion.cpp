@@ -112,11 +112,12 @@ std::vector<Source> sources_of(const CsvRow& head, const Model& model, const std
   }
   if (timed) leave_out(head, model, file, motion);
   if (timed && !motion.coordinates.empty()) return sources;
-  std::string known;
+  if (!timed) throw InputError(file + ":1:1: need a column t[s]");
+  std::vector<std::string> known;
   for (const HingeNode& hinge : model.hinges())
-    if (coordinate_columns(hinge).size() == 1) known += (known.empty() ? "" : ", ") + hinge.name;
-  throw InputError(fmt::format("{}:1:1: need a column {}", file,
-                               timed ? "named after a hinge of one coordinate; there are " + known : "t[s]"));
+    if (coordinate_columns(hinge).size() == 1) known.push_back(hinge.name);
+  throw InputError(fmt::format("{}:1:1: need a column named after a hinge of one coordinate; there are {}", file,
+                               fmt::join(known, ", ")));
 }
 
 void read_row(const CsvRow& row, const std::vector<Source>& sources, const std::string& file,

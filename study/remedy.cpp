@@ -23,8 +23,6 @@ bool leaves_something_out(const Terms& terms) {
          !terms.products_of_speeds;
 }
 
-bool has_modes(const Model& model) { return !model.layout().bodies.empty(); }
-
 /// "'law' (line 12 of the scene)": a part of the scene that stands under `key`.
 std::string placed_name(const Prepared& prepared, const char* key, const std::string& name) {
   const Value* parts = prepared.scene.source.find(key);
@@ -188,7 +186,7 @@ const Value* least_step(const Scene& scene, double time) {
 
 std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   const Terms terms = prepared.scene.formulation->terms();
-  const bool bends = has_modes(prepared.model());
+  const bool bends = flexible(prepared.model());
   switch (summary.status) {
     case RunStatus::completed:
     case RunStatus::interrupted:

@@ -19,9 +19,9 @@ using std::numbers::pi;
 LinearModel one_of(LinearModel model, const ResponseQuestion& question) {
   const auto require_one = [](const std::vector<Column>& columns, const std::string& option, const std::string& name) {
     if (columns.size() == 1) return;
-    std::string names;
-    for (const Column& c : columns) names += (names.empty() ? "" : ", ") + c.name;
-    throw OptionError(option, fmt::format("'{}' is {} of: {}; name one", name, columns.size(), names));
+    std::vector<std::string> names;
+    for (const Column& c : columns) names.push_back(c.name);
+    throw OptionError(option, fmt::format("'{}' is {} of: {}; name one", name, columns.size(), fmt::join(names, ", ")));
   };
   require_one(model.inputs, "input", question.input);
   require_one(model.outputs, "output", question.output);

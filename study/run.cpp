@@ -6,6 +6,7 @@
 #include <cctype>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/simulation/accuracy.hpp"
@@ -35,6 +36,11 @@ RunOptions options_of(const Prepared& prepared, const Control& control) {
   RunOptions options = run_options(prepared.scene);
   options.interrupted = control.interrupted;
   return options;
+}
+
+void add_sentence(std::string& text, const std::string& sentence) {
+  if (!text.empty() && !sentence.empty()) text += ' ';
+  text += sentence;
 }
 
 /// Whether the wall time between checkpoints has passed since the last one was written: a disk that takes longer than
@@ -163,10 +169,11 @@ RunSummary run_planned(const Prepared& prepared, const RunSettings& settings, Ru
   plan.run_evaluations = equations.evaluations();
   if (summary.status != RunStatus::completed) return summary;
   std::string problem = plan.problem;
-  if (const std::string text = agreement.text(); !text.empty()) problem += (problem.empty() ? "" : " ") + text;
+  add_sentence(problem, agreement.text());
   if (problem.empty()) return summary;
   summary.status = RunStatus::inaccurate;
-  summary.message = problem + (summary.message.empty() ? "" : " ") + summary.message;
+  add_sentence(problem, summary.message);
+  summary.message = std::move(problem);
   return summary;
 }
 
@@ -231,7 +238,7 @@ void add_unseen(const Prepared& prepared, RunSummary& summary) {
   if (!unseen) return;
   std::string text = unseen->text;
   text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  summary.message += (summary.message.empty() ? "" : " ") + text + ".";
+  add_sentence(summary.message, text + ".");
 }
 
 /// Of a run that was interrupted before it began.
@@ -255,6 +262,60 @@ bool wanted(Estimate estimate, const Beyond& beyond) {
 std::string why_it_grew(const Prepared& prepared, const RunSummary& summary) {
   const std::string sampled = sampled_growth_text(prepared, summary);
   return growth_text(prepared, summary) + (sampled.empty() ? remedy_text(prepared, summary) : sampled);
+}
+
+CertifiedRun run_by_plan(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
+  CertifiedRun result;
+  RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
+  result.summary = settings.control.stop() ? not_begun(prepared) : run_planned(prepared, settings, plan);
+  add_unseen(prepared, result.summary);
+  // What is inaccurate here is the choice, and nothing grows.
+  if (result.summary.status != RunStatus::inaccurate) result.summary.message += why_it_grew(prepared, result.summary);
+  std::optional<ErrorEstimate> estimate = plan.estimate;
+  if (estimate) estimate->end = result.summary.final.time;
+  result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
+  return result;
+}
+
+/// The error of a run against the model up, or why it is not known. \param comparable with a run of another model
+EstimateOutcome estimate_of(const Prepared& prepared, Registry& registry, const RunSettings& settings,
+                            const std::optional<Beyond>& beyond, const RunSummary& summary, bool comparable) {
+  EstimateOutcome outcome;
+  if (beyond && wanted(settings.estimate, *beyond) && comparable && loops_of(prepared.model()).empty())
+    outcome =
+        estimate_error(prepared.scene, *prepared.equations, *beyond, summary, registry,
+                       settings.estimate == Estimate::always ? Price::any : Price::tenth, settings.control.interrupted);
+  if (summary.status != RunStatus::interrupted && settings.control.stop())
+    outcome = {{}, "not estimated: the estimate was interrupted"};
+  if (outcome.why_not.empty() && !outcome.estimate && settings.look_beyond)
+    outcome.why_not = without_estimate(prepared, summary, beyond, settings);
+  return outcome;
+}
+
+CertifiedRun run_in_one_formulation(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
+  CertifiedRun result;
+  RunSummary& summary = result.summary;
+  std::optional<Beyond> beyond;
+  if (settings.look_beyond) beyond = next_model_up(prepared, registry);
+  summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
+  if (const Value* closing = prepared.scene.source.find("closing")) add_sentence(summary.message, closing->text());
+  add_unseen(prepared, summary);
+  summary.message += why_it_grew(prepared, summary);
+  const bool comparable = !has_switches(prepared.model()) && summary.status != RunStatus::interrupted &&
+                          summary.final.time > prepared.scene.initial.time;
+  EstimateOutcome estimate = estimate_of(prepared, registry, settings, beyond, summary, comparable);
+  std::vector<DroppedForces> dropped;
+  if (beyond) dropped = dropped_terms(prepared, *beyond, summary.validity.along, registry);
+  result.certificate = certify(prepared,
+                               {&summary,
+                                beyond ? &*beyond : nullptr,
+                                {},
+                                std::move(estimate.estimate),
+                                std::move(estimate.why_not),
+                                std::move(dropped),
+                                more_modes(prepared, registry, summary, settings, comparable)},
+                               registry);
+  return result;
 }
 
 [[noreturn]] void refuse_at_integrator(const Prepared& prepared, std::string why) {
@@ -303,62 +364,10 @@ void check_start(const Prepared& prepared) {
                                     brief(rtol->number()), why));
 }
 
-namespace {
-
-CertifiedRun run_certified(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
-  CertifiedRun result;
-  if (prepared.escalates()) {
-    RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
-    result.summary = settings.control.stop() ? not_begun(prepared) : run_planned(prepared, settings, plan);
-    add_unseen(prepared, result.summary);
-    // What is inaccurate here is the choice, and nothing grows.
-    if (result.summary.status != RunStatus::inaccurate) result.summary.message += why_it_grew(prepared, result.summary);
-    std::optional<ErrorEstimate> estimate = plan.estimate;
-    if (estimate) estimate->end = result.summary.final.time;
-    result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
-    return result;
-  }
-  std::optional<Beyond> beyond;
-  if (settings.look_beyond) beyond = next_model_up(prepared, registry);
-  result.summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
-  if (const Value* closing = prepared.scene.source.find("closing"))
-    result.summary.message += (result.summary.message.empty() ? "" : " ") + closing->text();
-  add_unseen(prepared, result.summary);
-  result.summary.message += why_it_grew(prepared, result.summary);
-  EstimateOutcome estimate;
-  const bool comparable = !has_switches(prepared.model()) && result.summary.status != RunStatus::interrupted &&
-                          result.summary.final.time > prepared.scene.initial.time;
-  if (beyond && wanted(settings.estimate, *beyond) && comparable && loops_of(prepared.model()).empty())
-    estimate =
-        estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
-                       settings.estimate == Estimate::always ? Price::any : Price::tenth, settings.control.interrupted);
-  if (result.summary.status != RunStatus::interrupted && settings.control.stop())
-    estimate = {{}, "not estimated: the estimate was interrupted"};
-  std::vector<DroppedForces> dropped;
-  if (beyond) dropped = dropped_terms(prepared, *beyond, result.summary.validity.along, registry);
-  std::string why_not;
-  if (!estimate.why_not.empty()) {
-    why_not = estimate.why_not;
-  } else if (!estimate.estimate && settings.look_beyond) {
-    why_not = without_estimate(prepared, result.summary, beyond, settings);
-  }
-  result.certificate = certify(prepared,
-                               {&result.summary,
-                                beyond ? &*beyond : nullptr,
-                                {},
-                                std::move(estimate.estimate),
-                                std::move(why_not),
-                                std::move(dropped),
-                                more_modes(prepared, registry, result.summary, settings, comparable)},
-                               registry);
-  return result;
-}
-
-}  // namespace
-
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
   try {
-    return run_certified(prepared, registry, settings);
+    return prepared.escalates() ? run_by_plan(prepared, registry, settings)
+                                : run_in_one_formulation(prepared, registry, settings);
   } catch (const IntegratorError& e) {
     refuse_integrator(prepared, e.deed());
   }

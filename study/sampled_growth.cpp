@@ -17,12 +17,12 @@ namespace withy::study {
 namespace {
 
 std::string names_of_sampled(const Model& model) {
-  std::string names;
+  std::vector<std::string> names;
   for (const LoadSlot& slot : sampled_slots(model)) {
-    const std::string name = fmt::format("'{}'", model.loads()[slot.load].name);
-    if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+    const std::string& name = model.loads()[slot.load].name;
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
-  return names;
+  return fmt::format("'{}'", fmt::join(names, "', '"));
 }
 
 /// The greatest growth about a steady state where sampled loads hold what they hold there [1/s].

@@ -156,27 +156,25 @@ Eigen::MatrixXd SampledLoads::differentiated(const std::vector<bool>& due) {
   };
   for (Eigen::Index i = 0; i < n; ++i)
     R.col(i).tail(all) = slope([&](double h) { return motions_.displaced(i, h); }, motions_.step(i));
-  const Eigen::VectorXd now = held(motions_.state());
-  for (const Part& part : loads_) {
-    const auto count = static_cast<Eigen::Index>(part.slot.count);
-    const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
-    for (Eigen::Index i = part.first; i < part.first + count; ++i)
-      R.col(n + i).tail(all) =
-          slope([&](double h) { return displaced(h * Eigen::VectorXd::Unit(size(), i)); }, size_of_held);
-  }
+  for (Eigen::Index i = 0; i < size(); ++i)
+    R.col(n + i).tail(all) = slope([&](double h) { return displaced(h * Eigen::VectorXd::Unit(size(), i)); }, step(i));
   return R;
 }
 
+double SampledLoads::step(Eigen::Index i) const {
+  const auto part = std::find_if(loads_.begin(), loads_.end(),
+                                 [&](const Part& p) { return i < p.first + static_cast<Eigen::Index>(p.slot.count); });
+  const auto count = static_cast<Eigen::Index>(part->slot.count);
+  return std::max(1.0, held_at_state().segment(part->first, count).cwiseAbs().maxCoeff());
+}
+
 void SampledLoads::differentiate() {
-  const Eigen::VectorXd now = held(motions_.state());
-  change_ = renewed(motions_.state(), motions_.state(), due(0)) - now;
+  change_ = renewed(motions_.state(), motions_.state(), due(0)) - held_at_state();
   for (const Part& part : loads_) {
-    const auto count = static_cast<Eigen::Index>(part.slot.count);
-    const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
-    for (Eigen::Index i = part.first; i < part.first + count; ++i) {
+    for (Eigen::Index i = part.first; i < part.first + static_cast<Eigen::Index>(part.slot.count); ++i) {
       const auto slope = [&](auto&& of) {
         return adaptive_difference([&](double h) { return of(displaced(h * Eigen::VectorXd::Unit(size(), i))); },
-                                   size_of_held)
+                                   step(i))
             .slope;
       };
       own_efforts_.col(i) = slope([&](const State& s) { return motions_.efforts(s, part.slot.load); });

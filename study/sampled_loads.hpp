@@ -92,6 +92,8 @@ class SampledLoads {
   void find_period();
   [[nodiscard]] std::vector<bool> due(double t) const;
   [[nodiscard]] Eigen::VectorXd held(const State& state) const;
+  /// A step of d_i over which anything changes little: one, or as much as its load holds.
+  [[nodiscard]] double step(Eigen::Index i) const;
   [[nodiscard]] Eigen::VectorXd held_and_told(const State& state) const;
   /// A state after an instant at which outputs are those of `before`.
   [[nodiscard]] State after(const State& before, State state, const std::vector<bool>& due);

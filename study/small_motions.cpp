@@ -10,6 +10,7 @@
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/load_efforts.hpp"
 
 namespace withy::study {
 namespace {
@@ -160,18 +161,13 @@ State SmallMotions::pushed(const Eigen::VectorXd& efforts) const {
   return state;
 }
 
-Eigen::VectorXd SmallMotions::efforts_of(const State& state, int load) const {
-  Eigen::VectorXd efforts(by_effort_.cols());
-  equations_->load_efforts(state.time, state.y, load, {efforts.data(), static_cast<std::size_t>(efforts.size())},
-                           work_);
-  return efforts;
-}
-
 Eigen::VectorXd SmallMotions::efforts(const State& state, std::size_t load) const {
-  return efforts_of(state, static_cast<int>(load));
+  return load_efforts(*equations_, state.time, state, static_cast<int>(load), work_);
 }
 
-Eigen::VectorXd SmallMotions::efforts(const State& state) const { return efforts_of(state, -1); }
+Eigen::VectorXd SmallMotions::efforts(const State& state) const {
+  return load_efforts(*equations_, state.time, state, EquationsOfMotion::all_loads, work_);
+}
 
 Eigen::VectorXd SmallMotions::rates(const State& state) const {
   const Layout& layout = model_->layout();

@@ -12,10 +12,10 @@
 
 namespace withy::study {
 
-/// ż = A z + B τ about a configuration: z are displacements δ of the free speeds, their rates, then the
-/// continuous states of loads; τ are efforts on
-/// all speeds beside those of the scene's loads. The model has, beside the scene's loads, one that pushes any speed,
-/// and motions in the place of what is held, so that accelerations and reactions are those of what is free.
+/// ż = A z + B τ about a configuration: z are displacements δ of the free speeds, their rates, then the continuous
+/// states of loads; τ are efforts on all speeds beside those of the scene's loads. The model has, beside the scene's
+/// loads, one that pushes any speed, and motions in the place of what is held, so that accelerations and reactions are
+/// those of what is free.
 class SmallMotions {
  public:
   /// \throws InputError where one rate of several of a hinge is held and `sensors` are to be read; std::domain_error
@@ -61,7 +61,6 @@ class SmallMotions {
 
  private:
   void hold(const Configuration& c, Model& model, bool needed);
-  [[nodiscard]] Eigen::VectorXd efforts_of(const State& state, int load) const;
   void find_steps(const Configuration& c);
 
   std::shared_ptr<const Model> model_;

@@ -5,7 +5,7 @@
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/check_loads.hpp"
-#include "withy/study/trees_alone.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {
@@ -24,6 +24,13 @@ double peak_of(const std::vector<double>& sizes) {
 
 bool same(const Terms& a, const Terms& b) {
   return a.strain == b.strain && a.truncation == b.truncation && a.products_of_speeds == b.products_of_speeds;
+}
+
+/// \throws InputError, SceneError where no terms are to be found of the scene
+const Prepared& fit_for_terms(const Prepared& prepared) {
+  refuse_loops(prepared, "'withy terms'");
+  check_loads(prepared);
+  return prepared;
 }
 
 }  // namespace
@@ -55,14 +62,7 @@ double TermSizes::greatest_peak(std::size_t group) const {
 }
 
 TermStudy::TermStudy(const Prepared& prepared, Registry& registry)
-    : prepared_(prepared), rates_(prepared.equations->size()), work_(prepared.equations->make_work()) {
-  refuse_loops(prepared, "'withy terms'");
-  check_loads(prepared);
-  for (const char* id : {"ruthless", "inconsistent", "consistent", "quadratic"})
-    compiled_.push_back(compile_throughout(prepared, registry, id));
-  const State& start = prepared.scene.initial;
-  const DenseSystem s = compiled_[0].equations->system(start.time, start.y);
-  for (std::size_t i = 0; i < s.size; ++i) inertias_.push_back(s.mass[i * (s.size + 1)]);
+    : prepared_(fit_for_terms(prepared)), terms_(prepared, registry) {
   sizes_.groups = coordinate_groups(prepared.model().layout());
   sizes_.sizes.resize(sizes_.groups.size());
   compile_all(registry);
@@ -92,22 +92,19 @@ void TermStudy::enter_left_out(const State& state, std::span<const double> accel
     std::vector<double> missing = force_balance(*others_[i].equations, state, accelerations);
     for (std::size_t k = 0; k < missing.size(); ++k) missing[k] -= whole[k];
     for (std::size_t g = 0; g < sizes_.groups.size(); ++g)
-      sizes_.left_out[i].sizes[g].push_back(size_of(missing, sizes_.groups[g], inertias_));
+      sizes_.left_out[i].sizes[g].push_back(size_of(missing, sizes_.groups[g], terms_.inertias()));
   }
 }
 
 void TermStudy::enter(const State& state) {
-  const Layout& layout = prepared_.model().layout();
-  if (!prepared_.equations->derivatives(state.time, state.y, rates_, work_).ok()) return;
-  const TermLedger ledger(*compiled_[0].model, {compiled_[0].equations.get(), compiled_[1].equations.get(),
-                                                compiled_[2].equations.get(), compiled_[3].equations.get()});
-  const auto accelerations = std::span<const double>(rates_).subspan(layout.positions, layout.speeds);
-  const TermForces forces = ledger.evaluate(state, accelerations);
-  enter_left_out(state, accelerations);
+  const auto accelerations = terms_.accelerations(state);
+  if (!accelerations) return;
+  const TermForces forces = terms_.forces(state, *accelerations);
+  enter_left_out(state, *accelerations);
   sizes_.times.push_back(state.time);
   for (std::size_t g = 0; g < sizes_.groups.size(); ++g) {
     for (std::size_t k = 0; k < terms_of_motion; ++k)
-      sizes_.sizes[g][k].push_back(size_of(forces[k], sizes_.groups[g], inertias_));
+      sizes_.sizes[g][k].push_back(size_of(forces[k], sizes_.groups[g], terms_.inertias()));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "withy/core/analysis/term_ledger.hpp"
 #include "withy/study/prepared.hpp"
+#include "withy/study/scene_terms.hpp"
 
 namespace withy::study {
 
@@ -41,8 +42,7 @@ struct TermSizes {
 /// Follows a run of the scene's own formulation.
 class TermStudy {
  public:
-  /// `prepared` must outlive it. \throws InputError, std::invalid_argument where the model cannot be compiled in the
-  /// formulations that terms are the differences of; SceneError as check_loads.
+  /// `prepared` must outlive it. \throws InputError where loops are closed; as SceneTerms; SceneError as check_loads.
   TermStudy(const Prepared& prepared, Registry& registry);
   /// Adds the terms at an output; none where the equations have no accelerations there.
   void enter(const State& state);
@@ -53,11 +53,8 @@ class TermStudy {
   void enter_left_out(const State& state, std::span<const double> accelerations);
 
   const Prepared& prepared_;
-  std::vector<Beyond> compiled_;  ///< what terms are the differences of
-  std::vector<Beyond> others_;    ///< of `left_out`, and last the richest
-  std::vector<double> inertias_;
-  std::vector<double> rates_;
-  Work work_;
+  SceneTerms terms_;
+  std::vector<Beyond> others_;  ///< of `left_out`, and last the richest
   TermSizes sizes_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace withy::study {
 
@@ -20,13 +21,13 @@ std::string bend_text(const Bend& bend) {
 }
 
 std::string without_exact_kinematics(const Model& model) {
-  std::string names;
+  std::vector<std::string> names;
   for (const BodyNode& node : model.bodies()) {
     if (node.body->shape().modes() == 0 || node.body->rod() != nullptr) continue;
     if (node.segment && node.segment->index > 0) continue;
-    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", node.segment ? node.segment->whole : node.name);
+    names.push_back(node.scene_name());
   }
-  return names;
+  return names.empty() ? "" : fmt::format("'{}'", fmt::join(names, "', '"));
 }
 
 ThirdOrder::ThirdOrder(const Prepared& model) : model_(model.model()) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "withy/study/load_efforts.hpp"
+
 namespace withy::study {
 namespace {
 
@@ -91,10 +93,9 @@ class Pushes {
     return {of(t, place.here, load), of(t, place.displaced, load)};
   }
   Eigen::VectorXd of(double t, const State& state, std::size_t load) {
-    std::vector<double> efforts(c_.layout().speeds);
-    c_.prepared().equations->load_efforts(t, state.y, static_cast<int>(load), efforts, work_);
+    Eigen::VectorXd efforts = load_efforts(*c_.prepared().equations, t, state, static_cast<int>(load), work_);
     for (const double effort : efforts) greatest_ = std::max(greatest_, std::abs(effort));
-    return Eigen::Map<const Eigen::VectorXd>(efforts.data(), static_cast<Eigen::Index>(efforts.size()));
+    return efforts;
   }
   /// What holds a hinge bears what acts on it.
   [[nodiscard]] double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {

@@ -3,32 +3,26 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <ctime>
 #include <limits>
 #include <vector>
 
 #include "withy/core/equations/branch_equations.hpp"
 #include "withy/core/equations/lane_equations.hpp"
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/simulation/run_times.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
 namespace {
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Times of `evaluate`, which makes `each` evaluations and returns whether they could be made.
 template <class Evaluate>
 EvaluationTimes time_calls(std::size_t each, const std::function<std::size_t()>& allocations, Evaluate&& evaluate) {
   bool good = true;
   const auto time = [&](std::size_t count) {
-    const double begin = cpu_seconds();
+    const double begin = thread_cpu_seconds();
     for (std::size_t i = 0; i < count; ++i) good = evaluate();
-    return cpu_seconds() - begin;
+    return thread_cpu_seconds() - begin;
   };
   // The first batches warm caches and clock rate.
   std::size_t batch = 1;

@@ -1,13 +1,11 @@
 #include "withy/study/tip_load.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/QR>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "withy/core/tree/rigid_inertia.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy::study {
 namespace {
@@ -44,12 +42,7 @@ Matrix6 through(const Matrix6& I, const Eigen::Matrix<double, 6, Eigen::Dynamic,
 }
 
 /// To six digits: functions need no more, and people read them.
-double rounded(double x) {
-  const std::string text = fmt::format("{:.6g}", x);
-  double value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
+double rounded(double x) { return to_digits(x, 6); }
 
 /// A load in one direction of bending: of a rigid body the mass, mass times offset, and inertia about the tip.
 struct RigidLoad {
@@ -67,6 +60,16 @@ std::optional<RigidLoad> in_direction(const Matrix6& I, const std::string& strai
 }
 
 }  // namespace
+
+BodyMasses masses_of(const Model& model) {
+  BodyMasses m{std::vector<double>(model.bodies().size()), std::vector<double>(model.bodies().size())};
+  for (std::size_t b = model.bodies().size(); b-- > 0;) {
+    m.own[b] = rigid_inertia(model.bodies()[b].body->shape()).mass;
+    const int parent = model.hinges()[b].parent;
+    if (parent >= 0) m.carried[static_cast<std::size_t>(parent)] += m.carried[b] + m.own[b];
+  }
+  return m;
+}
 
 std::vector<Matrix6> tip_loads(const Model& model, const State& state) {
   const auto& bodies = model.bodies();

@@ -1,5 +1,5 @@
 /// \file
-/// What hangs at the tips of beams, as functions that carry it know it.
+/// What hangs on bodies: its mass, and what hangs at the tips of beams, as functions that carry it know it.
 #pragma once
 
 #include <optional>
@@ -15,6 +15,13 @@ namespace withy::study {
 /// shape of the tip, and those of the uniform beam alone.
 inline constexpr const char* vibration_modes = "vibration-modes";
 inline constexpr const char* loaded_modes = "clamped-loaded";
+
+/// Of each body of a model, in its order.
+struct BodyMasses {
+  std::vector<double> own;      ///< [kg]
+  std::vector<double> carried;  ///< of all that hangs on it, without itself [kg]
+};
+BodyMasses masses_of(const Model& model);
 
 /// The articulated inertia of what hangs at the tip of each body, in the order of the model's: a symmetric map of
 /// twists (angular first, [rad/s], [m/s]) of the tip's section, in its axes and about its origin, to momenta [kg m²/s],

@@ -13,6 +13,7 @@
 
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/mode_basis.hpp"
+#include "withy/study/tip_load.hpp"
 
 namespace withy::study {
 namespace {
@@ -21,23 +22,7 @@ namespace {
 /// are off for a word, and part of that by which others are off at most to be proposed; a gravity [m/s²] that bends
 /// nothing far.
 constexpr double carries_something = 0.2, noticeable = 0.015, better_share = 0.5, weak = 1e-6;
-constexpr std::size_t few_enough = 20;       ///< bodies of a tree that are looked at
-constexpr std::size_t most_functions = 100;  ///< that polynomials have
-
-/// Of each body, its own mass, and that of all that hangs on it without itself.
-struct Masses {
-  std::vector<double> own, carried;
-};
-
-Masses masses_of(const Model& model) {
-  Masses m{std::vector<double>(model.bodies().size()), std::vector<double>(model.bodies().size())};
-  for (std::size_t b = model.bodies().size(); b-- > 0;) {
-    for (const Particle& p : model.bodies()[b].body->shape().particles) m.own[b] += p.mass;
-    const int parent = model.hinges()[b].parent;
-    if (parent >= 0) m.carried[static_cast<std::size_t>(parent)] += m.carried[b] + m.own[b];
-  }
-  return m;
-}
+constexpr std::size_t few_enough = 20;  ///< bodies of a tree that are looked at
 
 /// Deflections of tips by their body's name, under its weight and that of all it carries along the world's axes in
 /// turn, all hinges held and all other bodies straight, over the acceleration [s²]; nothing of bodies that have no tip.
@@ -83,7 +68,6 @@ struct Bending {
 /// The least number that is proposed: one polynomial is a parabola, which no force at the tip bends a beam to. Two are
 /// those of an even beam at the tip, whatever it carries. More of them tell the truth of those that vary.
 constexpr std::size_t least_polynomials = 2, further_polynomials = 2;
-constexpr const char* moment_at_tip = "orthogonal-polynomials";
 
 std::vector<Bending> without_moment(const Scene& scene, const std::string& name) {
   std::vector<Bending> all;
@@ -92,7 +76,7 @@ std::vector<Bending> without_moment(const Scene& scene, const std::string& name)
     for (const ModeCount& count : body.counts) {
       if (count.family_path.empty() || count.family_id() != "clamped-free" || count.modes == 0) continue;
       const std::size_t proposed = std::max(count.modes, least_polynomials), richer = proposed + further_polynomials;
-      if (richer <= std::min(count.most, most_functions)) all.push_back({count, proposed, richer});
+      if (richer <= std::min(count.most, most_polynomials)) all.push_back({count, proposed, richer});
     }
   }
   return all;
@@ -103,7 +87,7 @@ std::vector<std::pair<std::string, Value>> with_polynomials(const std::vector<Be
                                                             std::size_t Bending::*number) {
   std::vector<std::pair<std::string, Value>> values;
   for (const Bending& b : strains) {
-    values.emplace_back(b.count.family_path, Value(std::string(moment_at_tip)));
+    values.emplace_back(b.count.family_path, Value(std::string(polynomials)));
     values.emplace_back(b.count.path, Value(static_cast<double>(b.*number)));
   }
   return values;
@@ -147,14 +131,14 @@ std::string said_of(const std::vector<Bending>& strains, const Deflections& own,
   return fmt::format(
       "{} mode{} of clamped-free carr{} no moment at the tip, where other bodies hang: under their weight it deflects "
       "{:.2g} % otherwise than with more functions that do; choose {} of family: {}, or clamped-loaded with that load",
-      has, functions == 1 ? "" : "s", functions == 1 ? "ies" : "y", 100 * off, better, moment_at_tip);
+      has, functions == 1 ? "" : "s", functions == 1 ? "ies" : "y", 100 * off, better, polynomials);
 }
 
 }  // namespace
 
 void look_at_tip_moments(const Prepared& prepared, Registry& registry, std::vector<Remark>& all) {
   const Model& model = prepared.model();
-  const Masses masses = masses_of(model);
+  const BodyMasses masses = masses_of(model);
   // All bodies at once, for each is looked at with all others straight.
   SceneValues proposed = prepared.values, richer = prepared.values;
   std::map<std::string, std::vector<Bending>> bending;

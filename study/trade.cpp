@@ -1,5 +1,7 @@
 #include "withy/study/trade.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -18,11 +20,8 @@
 namespace withy::study {
 namespace {
 
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& p : parts) text += (text.empty() ? "" : " ") + p;
-  return text;
-}
+/// The values gone over, as references are known by.
+std::string key_of(const std::vector<std::string>& over) { return fmt::format("{}", fmt::join(over, " ")); }
 
 /// A run with the least CPU time it was seen to take.
 struct TimedRun {
@@ -100,11 +99,11 @@ void TradeStudy::look_up(std::size_t index) {
   const auto kept = options_.store->find(points_[index]);
   if (!kept) return;
   finished_[index] = kept->result;
-  told_[joined(points_[index].over)] = kept->reference;
+  told_[key_of(points_[index].over)] = kept->reference;
 }
 
 void TradeStudy::find_reference_for(const Point& point) {
-  const std::string key = joined(point.over);
+  const std::string key = key_of(point.over);
   if (known_.contains(key)) return;
   if (point.over.empty()) require_a_run(base_.scene);
   ReferenceGoal goal;
@@ -161,7 +160,7 @@ TradeResult TradeStudy::run_point(const Point& point) const {
     result.steps = run.summary.steps.accepted;
     result.evaluations = run.summary.steps.evaluations;
     result.cpu_seconds = run.cpu_seconds;
-    const Known& known = known_.at(joined(point.over));
+    const Known& known = known_.at(key_of(point.over));
     const auto [distance, until] = distances(outputs_, run.readings, known.reference.readings);
     const NamedDistances by_name = named(outputs_, distance, until);
     result.hinge_error = by_name.greatest_hinge();
@@ -186,7 +185,7 @@ void TradeStudy::work(Pool& pool) {
       const TradeResult result = run_point(point);
       if (result.status == name(RunStatus::interrupted)) return;
       const std::lock_guard lock(pool.mutex);
-      if (options_.store != nullptr) options_.store->keep({result, told_.at(joined(point.over))});
+      if (options_.store != nullptr) options_.store->keep({result, told_.at(key_of(point.over))});
       finished_[pool.open[k]] = result;
       ++pool.done;
       options_.control.tell(static_cast<double>(points_.size() - pool.open.size() + pool.done),

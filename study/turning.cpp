@@ -153,6 +153,24 @@ std::string not_repeating(const Configuration& c, const State& steady, const Tur
   return {};
 }
 
+/// Why a whole turn is not looked at; empty where it is.
+std::string no_whole_turn(const Configuration& c, const State& steady, const Turning& turning) {
+  if (turning.period == 0)
+    return turning.problem.empty() ? "nothing turns: spin a hinge (--spin), or give the period (--period)"
+                                   : turning.problem;
+  if (const std::string motion = motion_not_repeating(c, steady, turning.period); !motion.empty())
+    return fmt::format(
+        "motion '{}' moves otherwise {:.6g} s later, and no turn is like the next: give the period after which "
+        "everything repeats (--period)",
+        motion, turning.period);
+  if (const std::string load = not_repeating(c, steady, turning); !load.empty())
+    return fmt::format(
+        "load '{0}' acts otherwise {1:.6g} s later, and no turn is like the next: take it away (--set "
+        "loads.{0}=null), or give the period after which everything repeats (--period)",
+        load, turning.period);
+  return {};
+}
+
 /// Adds what becomes of what loads sample, which `check_turn` takes for held.
 void meet_sampled_loads(const Configuration& c, const State& steady, double period, TurningModes& result) {
   if (!c.sampled()) return;
@@ -204,26 +222,8 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
     result.turns = turns(c.prepared().model(), result.check.turning);
     if (!wish.floquet && !wish.blades) return result;
     const Turning& turning = result.check.turning;
-    if (turning.period == 0) {
-      result.problem = turning.problem.empty() ? "nothing turns: spin a hinge (--spin), or give the period (--period)"
-                                               : turning.problem;
-      return result;
-    }
-    if (const std::string motion = motion_not_repeating(c, steady, turning.period); !motion.empty()) {
-      result.problem = fmt::format(
-          "motion '{}' moves otherwise {:.6g} s later, and no turn is like the next: give the period after which "
-          "everything repeats (--period)",
-          motion, turning.period);
-      return result;
-    }
-    if (const std::string load = not_repeating(c, steady, turning); !load.empty()) {
-      result.problem = fmt::format(
-          "load '{0}' acts otherwise {1:.6g} s later, and no turn is like the next: take it away (--set "
-          "loads.{0}=null), or "
-          "give the period after which everything repeats (--period)",
-          load, turning.period);
-      return result;
-    }
+    result.problem = no_whole_turn(c, steady, turning);
+    if (!result.problem.empty()) return result;
     const std::size_t least = instants_of_loads(c, steady, turning);
     const TurningForm form = turning_form(c.dynamics(), steady, c.held(), turning, static_cast<Eigen::Index>(least));
     result.moves = !form.turn.constant;
@@ -252,112 +252,6 @@ std::vector<std::string> moving_freely(const Configuration& c, const State& stat
     if (moves) hinges.push_back(slot.name);
   }
   return hinges;
-}
-
-std::string passing_text(const std::vector<std::string>& hinges) {
-  return fmt::format(
-      "{} '{}' {} and nothing holds {}: this is an instant of a motion and no state that stays. Give one at rest or in "
-      "steady motion (--at), or hold hinges (--lock, --spin).",
-      hinges.size() > 1 ? "The hinges" : "The hinge", fmt::join(hinges, "', '"), hinges.size() > 1 ? "move" : "moves",
-      hinges.size() > 1 ? "them at their rates" : "it at its rate");
-}
-
-std::string uneven_text(const std::vector<std::string>& motions) {
-  const bool many = motions.size() > 1;
-  return fmt::format(
-      "The motion{} '{}' {} not go on at the rate {} at this instant, and what is free feels it: this is balanced now "
-      "and no state that stays. Choose a time at which {} (--at), or hold the hinge (--lock, --spin).",
-      many ? "s" : "", fmt::join(motions, "', '"), many ? "do" : "does", many ? "they have" : "it has",
-      many ? "they rest" : "it rests");
-}
-
-std::string timed_text(const std::vector<std::string>& loads) {
-  const bool many = loads.size() > 1;
-  return fmt::format(
-      "The load{} '{}' change{} with time, whatever moves, and what is free feels it: this is balanced at this instant "
-      "and no state that stays. Take {} away (--set loads.{}=null), or choose the time that is meant (--at).",
-      many ? "s" : "", fmt::join(loads, "', '"), many ? "" : "s", many ? "them" : "it",
-      fmt::join(loads, "=null --set loads."));
-}
-
-std::string shaking_text(const std::vector<std::string>& loads) {
-  const bool many = loads.size() > 1;
-  return fmt::format("the load{} '{}' change{} the equations of small motions with time", many ? "s" : "",
-                     fmt::join(loads, "', '"), many ? "" : "s");
-}
-
-namespace {
-
-/// Of a state where loads or motions repeat and no hinge moves by its rate.
-std::string shaken_text(const TurnCheck& check) {
-  return fmt::format(
-      "The equations of small motions change with time, over the period of {:.6g} s by {:.2g} % of their greatest "
-      "element{}: these are those of one instant and tell no stability. --floquet looks at the whole period.",
-      check.turning.period, 100 * check.change,
-      check.steady ? "" : ", and this state is balanced at this instant alone");
-}
-
-/// Of what the comparison of masses, stiffnesses and what depends on speeds at some angles does not show; else empty.
-std::string text_of_few(const TurningModes& turn) {
-  if (!turn.check.periodic()) return {};
-  if (!turn.sampled.empty())
-    return fmt::format(
-        "What the sampled load{} '{}' make{} of small motions changes as the hinges turn{}: these are those of one "
-        "frozen angle.",
-        turn.sampled.size() > 1 ? "s" : "", fmt::join(turn.sampled, "', '"), turn.sampled.size() > 1 ? "" : "s",
-        turn.check.steady ? "" : ", and this state is balanced at this angle alone");
-  if (!turn.commanding.empty()) return commanding_text(turn.commanding);
-  if (!turn.narrow.empty())
-    return fmt::format(
-        "The load '{}' acts in a narrow part of a turn{}: these are small motions beside it. --floquet looks at the "
-        "whole turn.",
-        turn.narrow, turn.check.steady ? "" : ", and this state is balanced at some angles alone");
-  return {};
-}
-
-}  // namespace
-
-std::string commanding_text(const std::vector<std::string>& loads) {
-  return fmt::format(
-      "The hinges turn and what the sampled load{} '{}' command{} turns with them: this state is steady at this angle "
-      "alone.",
-      loads.size() > 1 ? "s" : "", fmt::join(loads, "', '"), loads.size() > 1 ? "" : "s");
-}
-
-std::string turn_text(const TurningModes& turn) {
-  constexpr const char* no_stability = " Growth and decay are those of this instant and tell no stability.";
-  const TurnCheck& check = turn.check;
-  const Turning& turning = check.turning;
-  if (!turn.passing.empty()) return passing_text(turn.passing) + no_stability;
-  if (!turn.uneven.empty()) return uneven_text(turn.uneven) + no_stability;
-  if (!turn.timed.empty()) return timed_text(turn.timed) + no_stability;
-  if (!turn.shaking.empty())
-    return fmt::format(
-        "At this state {}.{}{}", shaking_text(turn.shaking), no_stability,
-        turn.floquet ? "" : " --floquet with --period looks at a period after which everything repeats.");
-  if (const std::string text = text_of_few(turn); !text.empty()) return text + no_stability;
-  if (!turning.problem.empty())
-    return check.periodic()
-               ? fmt::format(
-                     "The equations of small motions change as the hinges move, by {:.2g} % of their greatest "
-                     "element{}: these are those of one instant and tell no stability. A whole turn is not "
-                     "looked at: {}.",
-                     100 * check.change, check.steady ? "" : ", and this state is balanced at this place alone",
-                     turning.problem)
-               : fmt::format(
-                     "The equations of small motions stay the same over a turn of the slowest hinge; a whole "
-                     "turn is not looked at: {}.",
-                     turning.problem);
-  if (turning.period == 0) return {};
-  if (!turn.turns) return check.periodic() ? shaken_text(check) : std::string();
-  if (!check.periodic())
-    return fmt::format("The hinges turn once in {:.6g} s, and the equations of small motions stay the same.",
-                       turning.period);
-  return fmt::format(
-      "The equations of small motions change with the hinges' angle, over a turn of {:.6g} s by {:.2g} % of their "
-      "greatest element{}: these are those of one frozen angle and tell no stability. --floquet looks at the whole "
-      "turn, --blades at three or more equal blades from where the rotor does not turn.",
-      turning.period, 100 * check.change, check.steady ? "" : ", and this state is balanced at this angle alone");
 }
 
 }  // namespace withy::study

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t most_values = 100000;
 
 /// As fifteen digits have it: 220, and not the 219.99999999999997 that steps leave.
-double of_fifteen_digits(double value) { return plain_number(fmt::format("{:.15g}", value)).value_or(value); }
+double of_fifteen_digits(double value) { return to_digits(value, 15); }
 
 /// "15 rpm" or "15rpm", as in scenes: a number, and the unit after it.
 struct RangeEnd {

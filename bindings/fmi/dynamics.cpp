@@ -9,6 +9,7 @@
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/just_before.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/run_times.hpp"
 
 namespace withy::fmi {
 namespace {
@@ -38,15 +39,6 @@ std::vector<bool> driven_states(const Model& model, std::size_t states) {
     for (std::size_t i = 0; i < slot.speeds; ++i) driven[layout.positions + slot.speed + i] = true;
   }
   return driven;
-}
-
-std::vector<double> jump_times(const Model& model) {
-  std::vector<double> times;
-  const auto add = [&](const std::vector<double>& more) { times.insert(times.end(), more.begin(), more.end()); };
-  for (const LoadNode& load : model.loads()) add(load.load->discontinuities());
-  for (const MotionNode& motion : model.motions()) add(motion.motion->discontinuities());
-  std::sort(times.begin(), times.end());
-  return times;
 }
 
 double rounding(double t) { return 1e-12 * std::max(1.0, std::abs(t)); }
@@ -81,7 +73,7 @@ Dynamics::Dynamics(std::shared_ptr<const study::Prepared> prepared, double t)
       events_(prepared_->model(), equations_, prepared_->scene.events),
       looked_for_(watching(prepared_->scene)),
       zeros_(prepared_->model(), prepared_->scene.events, state_),
-      jumps_(jump_times(prepared_->model())),
+      jumps_(discontinuities(prepared_->model())),
       signs_(indicator_count(prepared_->scene)),
       values_(signs_.size()) {
   begin();

@@ -14,7 +14,7 @@
 #include "withy/scene/sha256.hpp"
 #include "withy/scene/visual.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/trees_alone.hpp"
+#include "withy/study/refusals.hpp"
 
 namespace withy::fmi {
 namespace {

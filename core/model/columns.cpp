@@ -30,8 +30,7 @@ std::vector<std::string> column_names_of(const HingeNode& hinge) {
   std::vector<std::string> names;
   for (const Column& c : coordinate_columns(hinge)) names.push_back(c.name);
   for (const Column& c : rate_columns(hinge)) names.push_back(c.name);
-  for (std::size_t i = 0; i < hinge.hinge->speeds(); ++i)
-    names.push_back(numbered(hinge.name + ".motion_effort", i, hinge.hinge->speeds()));
+  for (const Column& c : motion_effort_columns(hinge)) names.push_back(c.name);
   return names;
 }
 
@@ -104,6 +103,22 @@ std::vector<Column> rate_columns(const HingeNode& hinge) {
     add(c, hinge.name, {".wx", ".wy", ".wz"}, "rad/s");
   if (kernel->kind == HingeKind::free) add(c, hinge.name, {".vx", ".vy", ".vz"}, "m/s");
   return c;
+}
+
+std::vector<Column> motion_effort_columns(const HingeNode& hinge) {
+  std::vector<Column> c;
+  for (const HingeRate& rate : hinge_rates(*hinge.hinge))
+    c.push_back({numbered(hinge.name + ".motion_effort", c.size(), hinge.hinge->speeds()), rate.angular ? "N m" : "N"});
+  return c;
+}
+
+std::string unit_of_effort(const Model& model, std::size_t speed) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    if (speed >= slot.speed && speed < slot.speed + slot.speeds)
+      return hinge_rates(*model.hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
+  }
+  return {};
 }
 
 }  // namespace withy

@@ -21,6 +21,10 @@ struct Column {
 std::vector<Column> coordinate_columns(const HingeNode& hinge);
 /// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0` [rad/s] ….
 std::vector<Column> rate_columns(const HingeNode& hinge);
+/// What a motion that drives it has to give: `shoulder.motion_effort` [N m], `joint.motion_effort.0` [N] ….
+std::vector<Column> motion_effort_columns(const HingeNode& hinge);
+/// Of an effort on a speed: "N m" or "N"; empty where no hinge has that speed.
+std::string unit_of_effort(const Model& model, std::size_t speed);
 
 /// As tables spell a name: "mode[1]" is "mode.1".
 std::string spelled_in_tables(const std::string& name);

@@ -46,6 +46,8 @@ struct BodyNode {
 
   /// Index of a frame; −1 where there is none.
   [[nodiscard]] int frame(std::string_view frame_name) const;
+  /// The body's name in the scene: of a segment that of the whole.
+  [[nodiscard]] const std::string& scene_name() const { return segment ? segment->whole : name; }
 };
 
 /// A hinge in the tree, with its child. The hinge frame F is at `offset` in the parent's frame; M is the child's frame.

@@ -29,7 +29,7 @@ Tip tip_of(const Model& model, const std::string& name, const std::string& stati
 std::vector<Tip> ends(const Model& model, bool measured) {
   std::vector<Tip> all;
   for (const BodyNode& node : model.bodies()) {
-    const std::string& name = node.segment ? node.segment->whole : node.name;
+    const std::string& name = node.scene_name();
     if (node.segment && node.segment->index > 0) continue;
     if (node.frame("tip") >= 0) all.push_back(tip_of(model, name, "tip", model.segments(name)));
     if (!measured || node.segment || node.body->shape().modes() == 0) continue;

@@ -89,13 +89,8 @@ std::string unit_of(const Model& model, const std::string& signal) {
 /// Of what is commanded at a place.
 std::string unit_of(const Model& model, const InputPlace& place) {
   if (place.speed < 0) return place.moment ? "N m" : "N";
-  const auto speed = static_cast<std::size_t>(place.speed);
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const Slot& slot = model.layout().hinges[h];
-    if (speed >= slot.speed && speed < slot.speed + slot.speeds)
-      return hinge_rates(*model.hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
-  }
-  return "1";
+  const std::string unit = unit_of_effort(model, static_cast<std::size_t>(place.speed));
+  return unit.empty() ? "1" : unit;
 }
 
 /// A unit with its words replaced.

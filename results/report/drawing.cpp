@@ -182,7 +182,7 @@ void Drawing::add_sections(const BodyNode& node, Part& part) const {
 
 const Surface* Drawing::surface(std::size_t body) const {
   const BodyNode& node = model_->bodies()[body];
-  return looks_.surface(node.segment ? node.segment->whole : node.name);
+  return looks_.surface(node.scene_name());
 }
 
 /// Of a body with corners `left` and `right` at its tip and stations "(x, y)": its surface, row by row from the root,
@@ -240,7 +240,7 @@ Json Drawing::part(std::size_t body) const {
   const Part& part = parts_[body];
   const BodyNode& node = model_->bodies()[body];
   static constexpr const char* kinds[] = {"box", "line", "strip", "mesh", "points"};
-  Json j{{"name", node.segment ? node.segment->whole : node.name},
+  Json j{{"name", node.scene_name()},
          {"kind", kinds[static_cast<int>(part.kind)]},
          {"parent", model_->hinges()[body].parent},
          {"moves", model_->hinges()[body].hinge->coordinates() > 0},

@@ -153,7 +153,7 @@ double Looks::thickness(const std::string& name) const {
 
 std::vector<Outline> Looks::sections(const BodyNode& node, const std::vector<double>& x) const {
   std::vector<Outline> sections;
-  const Value* beam = body(node.segment ? node.segment->whole : node.name);
+  const Value* beam = body(node.scene_name());
   if (beam == nullptr) return sections;
   const Value* visual = beam->find("visual");
   if (visual == nullptr && beam->text_at("type") != "beam") return sections;

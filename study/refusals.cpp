@@ -1,11 +1,21 @@
-#include "withy/study/states_of_loads.hpp"
+#include "withy/study/refusals.hpp"
 
 #include <fmt/format.h>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/study/configuration.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
+
+void refuse_loops(const Prepared& prepared, const char* analysis) {
+  const auto loops = loops_of(prepared.model());
+  if (loops.empty()) return;
+  throw InputError(fmt::format(
+      "{}: constraint '{}' closes a loop, and {} knows trees alone: leave the constraints out, or simulate with "
+      "'withy run'",
+      prepared.scene.file, loops.front()->name(), analysis));
+}
 
 void refuse_states_of_loads(const Prepared& prepared, const char* analysis) {
   const Layout& layout = prepared.model().layout();
