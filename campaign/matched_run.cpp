@@ -8,7 +8,6 @@
 #include <exception>
 #include <mutex>
 #include <stdexcept>
-#include <thread>
 
 #include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/integrator_call.hpp"
@@ -17,6 +16,7 @@
 #include "withy/results/result_columns.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/prepared.hpp"
+#include "withy/study/work_together.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -130,7 +130,7 @@ std::vector<MatchedRun> matched_runs(const std::vector<SceneValues>& scenes, Reg
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr failure;
-  const auto work = [&] {
+  const auto work = [&](std::size_t) {
     for (std::size_t k = next++; k < scenes.size(); k = next++) {
       try {
         runs[k] = matched_run(scenes[k], registry, data, control);
@@ -141,11 +141,7 @@ std::vector<MatchedRun> matched_runs(const std::vector<SceneValues>& scenes, Reg
       }
     }
   };
-  {
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 1; i < std::min(jobs, scenes.size()); ++i) threads.emplace_back(work);
-    work();
-  }
+  study::work_together(std::min(jobs, scenes.size()), work);
   if (failure) std::rethrow_exception(failure);
   return runs;
 }

@@ -10,6 +10,7 @@
 #include "withy/campaign/case_lanes.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/work_together.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -31,11 +32,7 @@ class Workers {
     for (std::size_t j = 0; j < jobs; ++j)
       segments.push_back(
           std::make_unique<SegmentWriter>(store_.segment(settings_.shard, settings_.shards, j), plan_.fingerprint));
-    {
-      std::vector<std::jthread> threads;
-      for (std::size_t j = 1; j < jobs; ++j) threads.emplace_back([this, &segments, j] { work(*segments[j], false); });
-      work(*segments[0], true);
-    }
+    study::work_together(jobs, [&](std::size_t j) { work(*segments[j], j == 0); });
     if (error_) std::rethrow_exception(error_);
     outcome_.ran = ran_;
     outcome_.failed = failed_;

@@ -16,6 +16,7 @@
 #include "withy/study/output_reader.hpp"
 #include "withy/study/step_limit.hpp"
 #include "withy/study/tip_load.hpp"
+#include "withy/study/work_together.hpp"
 
 namespace withy::study {
 namespace {
@@ -211,11 +212,7 @@ bool TradeStudy::run() {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   const std::size_t most = std::max<std::size_t>(pool.open.size(), 1);
   const std::size_t jobs = std::min(options_.jobs > 0 ? options_.jobs : cores, most);
-  {
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 1; i < jobs; ++i) threads.emplace_back([&] { work(pool); });
-    work(pool);
-  }
+  work_together(jobs, [&](std::size_t) { work(pool); });
   if (pool.failure) std::rethrow_exception(pool.failure);
   return !options_.control.stop();
 }

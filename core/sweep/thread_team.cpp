@@ -1,5 +1,8 @@
 #include "withy/core/sweep/thread_team.hpp"
 
+#include <string>
+#include <system_error>
+
 namespace withy::sweep {
 namespace {
 
@@ -23,10 +26,18 @@ constexpr int spins = 2000;
 }  // namespace
 
 ThreadTeam::ThreadTeam(std::size_t members) {
-  for (std::size_t k = 1; k < members; ++k) helpers_.emplace_back([this, k] { help(k); });
+  helpers_.reserve(members);
+  try {
+    for (std::size_t k = 1; k < members; ++k) helpers_.emplace_back([this, k] { help(k); });
+  } catch (const std::system_error& error) {
+    end();  // threads that are not joined would end the program
+    throw std::system_error(error.code(), "an evaluation cannot begin " + std::to_string(members) + " threads");
+  }
 }
 
-ThreadTeam::~ThreadTeam() {
+ThreadTeam::~ThreadTeam() { end(); }
+
+void ThreadTeam::end() noexcept {
   begin(nullptr, nullptr);
   for (std::thread& helper : helpers_) helper.join();
 }

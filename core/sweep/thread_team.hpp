@@ -16,6 +16,7 @@ namespace withy::sweep {
 class ThreadTeam {
  public:
   /// \param members at least 1, the caller among them
+  /// \throws std::system_error where the system gives no more threads
   explicit ThreadTeam(std::size_t members);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
@@ -38,6 +39,7 @@ class ThreadTeam {
   void begin(Call call, const void* work) noexcept;
   void wait() noexcept;
   void help(std::size_t member) noexcept;
+  void end() noexcept;
 
   Call call_ = nullptr;  ///< null: the helpers end
   const void* work_ = nullptr;
