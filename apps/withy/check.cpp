@@ -30,7 +30,7 @@ void add_check(Options& o, CheckArguments& a) {
 
 }  // namespace
 
-const Command check_command = {"check", "Validate a scene, and say what in it is hardly meant",
+const Command check_command = {"check", "Validate a scene, and list probable mistakes",
                                "  withy check scenes/two-link-slew.yaml\n"
                                "  withy check scenes/two-link-slew.yaml --strict",
                                &taking<CheckArguments, add_check, check>};

@@ -47,7 +47,8 @@ const program::Program& withy_program() {
   return all;
 }
 
-const Command completion_command = {"completion", "Print what makes a shell complete withy's commands and options",
+const Command completion_command = {"completion",
+                                    "Print a script by which a shell completes withy's commands and options",
                                     "  withy completion bash\n"
                                     "  withy completion zsh",
                                     &taking<ShellArgument, add_completion, completion>};

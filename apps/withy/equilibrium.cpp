@@ -43,7 +43,7 @@ void add_equilibrium(Options& o, EquilibriumArguments& a) {
 }  // namespace
 
 const Command equilibrium_command = {
-    "equilibrium", "Find the state that stays as it is: at rest, or spinning steadily",
+    "equilibrium", "Find the steady state: at rest, or spinning at constant rates",
     "  withy equilibrium scenes/rotating-blade.yaml --spin axle=6\n"
     "  withy equilibrium scenes/two-link-slew.yaml --lock shoulder,elbow --set gravity.1=-9.81 --out bent.json",
     &taking<EquilibriumArguments, add_equilibrium, equilibrium>};

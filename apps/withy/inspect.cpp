@@ -27,7 +27,7 @@ void add_inspect(Options& o, StateArguments& a) {
 
 }  // namespace
 
-const Command inspect_command = {"inspect", "Show what a scene is made of and what its compilation saved",
+const Command inspect_command = {"inspect", "Show the parts of a scene and the simplifications by its compilation",
                                  "  withy inspect scenes/two-link-slew.yaml",
                                  &taking<StateArguments, add_inspect, inspect>};
 

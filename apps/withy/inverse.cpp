@@ -50,7 +50,7 @@ void add_inverse(Options& o, InverseArguments& a) {
 }  // namespace
 
 const Command inverse_command = {
-    "inverse", "Efforts that hinges need to follow their motions, flexible bodies swinging along",
+    "inverse", "Inverse dynamics: efforts that hinges need to follow their motions",
     "  withy inverse scenes/spin-up.yaml\n"
     "  withy inverse scenes/two-link-slew.yaml --motion scenes/motions/two-link-pick.csv --set loads={} "
     "--out results/pick",

@@ -103,7 +103,7 @@ void add_modes(Options& o, ModesArguments& a) {
 }  // namespace
 
 const Command modes_command = {
-    "modes", "Frequencies, damping and shapes of small motions; over a sweep, if wanted",
+    "modes", "Frequencies, damping and mode shapes of small motions; also over a sweep",
     "  withy modes scenes/two-link-slew.yaml --lock shoulder,elbow\n"
     "  withy modes scenes/rotating-blade.yaml --spin axle=6 --count 4\n"
     "  withy modes scenes/solar-panel.yaml --as-is --effective-mass\n"

@@ -95,11 +95,12 @@ const Command submit_part = {
     "submit", "Have a cluster run the cases",
     "  withy sweep submit scenes/sweeps/slew-tolerances.yaml --out results/cluster --slurm --tasks 20 --time 01:00:00",
     part<add_submit, sweep_submit>};
-const Command status_part = {"status", "Say what is done, has failed and is missing, and how long that takes",
+const Command status_part = {"status", "Show how many cases are done, failed and missing, and how long the rest takes",
                              "  withy sweep status results/tolerances", part<add_store, sweep_status>};
-const Command collect_part = {"collect", "Make tables of what is done: cases, statistics, sensitivities, failures",
+const Command collect_part = {"collect",
+                              "Make tables of the finished cases: values, statistics, sensitivities, failures",
                               "  withy sweep collect results/tolerances", part<add_store, sweep_collect>};
-const Command case_part = {"case", "Run one case alone, to the same bits as among the others",
+const Command case_part = {"case", "Run one case alone, with the same bits as in the sweep",
                            "  withy sweep case scenes/sweeps/slew-tolerances.yaml 17", part<add_case, sweep_case>};
 
 program::Call add_sweep(Options& o) {
@@ -108,7 +109,7 @@ program::Call add_sweep(Options& o) {
 
 }  // namespace
 
-const Command sweep_command = {"sweep", "Run many cases of a scene, as a plan says",
+const Command sweep_command = {"sweep", "Run many cases of a scene, by a plan",
                                "  withy sweep run scenes/sweeps/slew-tolerances.yaml --out results/tolerances\n"
                                "  withy sweep status results/tolerances\n"
                                "  withy sweep collect results/tolerances\n"
