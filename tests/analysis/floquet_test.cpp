@@ -59,6 +59,18 @@ TEST(Mathieu, damped_is_the_undamped_shifted) {
     EXPECT_NEAR(damped[i].exponent.real(), plain[i].exponent.real() - 0.2, 1e-9);
 }
 
+/// Of a pair the one is told whose strongest harmonic goes round forwards, and its lines are of that one.
+TEST(Mathieu, the_strongest_line_is_at_the_frequency_of_the_mode) {
+  for (const double a : {0.5, 1.9, 2.6, 3.4, 5.0, 7.0}) {
+    const FloquetAnalysis f = floquet(mathieu(a, 0.3), Eigen::VectorXd::Ones(1));
+    for (const CharacteristicMode& mode : f.modes) {
+      ASSERT_FALSE(mode.lines.empty());
+      EXPECT_GT(mode.exponent.imag(), 0) << a;
+      EXPECT_EQ(mode.lines.front().first, mode.exponent.imag()) << a;
+    }
+  }
+}
+
 /// In the principal instability the multiplier is real, and the motion e^{λt} (cos t + …): an instrument sees one line
 /// at 1 rad/s, which harmonics at 1 and −1 make.
 TEST(Mathieu, motions_of_a_real_multiplier_are_seen_once_at_each_frequency) {
@@ -367,6 +379,9 @@ hinges:
   EXPECT_EQ(turning(*c.scene.model, c.state).period, 0) << "nothing moves";
   c.spin("first", 3), c.spin("second", -2);
   EXPECT_NEAR(turning(*c.scene.model, c.state).period, 2 * std::numbers::pi, 1e-12);
+  // A period that is given is a multiple of that.
+  EXPECT_EQ(turning(*c.scene.model, c.state, 4 * std::numbers::pi).period, 4 * std::numbers::pi);
+  EXPECT_NE(turning(*c.scene.model, c.state, 3 * std::numbers::pi).problem.find("do not come back"), std::string::npos);
   c.spin("second", std::sqrt(2.0));
   EXPECT_NE(turning(*c.scene.model, c.state).problem.find("common period"), std::string::npos);
   AnalysedScene line(with("prismatic"), "quadratic");

@@ -191,6 +191,9 @@ TEST(Cases, LatinValuesFillEveryStratumAndAreNotInOrder) {
   for (const double v : x) strata.insert(static_cast<int>(500 * (v - 0.5)));
   EXPECT_EQ(strata.size(), 500U);
   EXPECT_FALSE(std::is_sorted(x.begin(), x.end()));
+  std::vector<double> within;
+  for (const double v : x) within.push_back(500 * (v - 0.5) - std::floor(500 * (v - 0.5)));
+  EXPECT_LT(distance_from_uniform(within), 1.95 / std::sqrt(500));
 }
 
 TEST(Cases, CorrelatedValuesKeepTheirOwnDistributions) {
@@ -254,6 +257,26 @@ TEST(Cases, DesignsChangeOneValueAtATime) {
   EXPECT_FALSE(each.values(0)[0]) << "the scene itself";
   EXPECT_EQ(each.values(3)[0]->number(), 3);
   EXPECT_NEAR(each.values(5)[1]->number(), -8, 1e-12) << "one deviation up";
+}
+
+// Elementary effects are differences over half of the distribution: a level above the middle steps down, or its point
+// would lie beyond the end and be taken back to it.
+TEST(Cases, StepsOfMorrisGoOverHalfAndStayWithin) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(
+      "vary: {bodies.rod.mass: {uniform: {from: 1, to: 2}}, gravity.0: {uniform: {from: 0, to: 1}}}\n"
+      "design: {type: morris, levels: 4}\ncases: 60\n");
+  std::set<double> begun;
+  for (std::uint64_t number = 0; number < 60; ++number) {
+    const MorrisTrajectory trajectory = morris_trajectory(plan, number);
+    begun.insert(trajectory.begin.begin(), trajectory.begin.end());
+    for (const auto& [axis, step] : trajectory.steps) {
+      EXPECT_EQ(std::abs(step), 0.5);
+      EXPECT_GT(trajectory.begin[axis] + step, 0);
+      EXPECT_LT(trajectory.begin[axis] + step, 1);
+    }
+  }
+  EXPECT_EQ(begun, (std::set<double>{0.125, 0.375, 0.625, 0.875}));
 }
 
 /// All of a value, with the places it stands at.

@@ -65,6 +65,18 @@ TEST(SobolIndices, IntervalsHoldTheTruthAsOftenAsTheySay) {
   EXPECT_NEAR(held, 0.95 * trials, 18);  // four deviations of the count
 }
 
+// Of two samples by hand: about the mean 2 of all points the variances are 2 and 5. The interval is that of the ratio
+// linearized, (a_j - r b_j)/b.
+TEST(SobolIndices, AreRatiosOfMeansOverAllPointsWithTheDeviationsOfRatios) {
+  const std::vector<SaltelliSample> samples = {{0, 2, {1}}, {1, 5, {4}}};
+  const SobolIndex index = sobol_indices(samples)[0];
+  EXPECT_DOUBLE_EQ(index.first.value, 4.5 / 3.5);
+  EXPECT_DOUBLE_EQ(index.total.value, 2.5 / 3.5);
+  EXPECT_NEAR(index.first.high - index.first.value, 1.959964 * 36 / 49, 1e-6);
+  EXPECT_NEAR(index.total.high - index.total.value, 1.959964 * 13 / 49, 1e-6);
+  EXPECT_NEAR(index.first.high + index.first.low, 2 * index.first.value, 1e-14);
+}
+
 TEST(Morris, MeasuresOfEffects) {
   const MorrisMeasure m = morris_measure({1, -3, 2, 4});
   EXPECT_DOUBLE_EQ(m.mean, 1.0);

@@ -43,6 +43,13 @@ TEST(Segments, TellWhatIsTakenAwayFromWhatStays) {
   EXPECT_FALSE(r.values[3]);
 }
 
+TEST(Segments, ARecordIsNoneThatIsLongerOrShorterThanWhatItHolds) {
+  const std::string bytes = encode(made(1));
+  EXPECT_TRUE(decode(bytes));
+  EXPECT_FALSE(decode(bytes + '\0'));
+  EXPECT_FALSE(decode(bytes.substr(0, bytes.size() - 1)));
+}
+
 TEST(Segments, AnyDamageCostsTheRecordsItTouchesAndNoOther) {
   const PlanFolder folder;
   const std::filesystem::path path = folder / "a.segment";

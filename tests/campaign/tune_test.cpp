@@ -166,6 +166,39 @@ TEST(Tune, FindsWhatMadeTheDataAndItsCovarianceIsThatOfManyFits) {
   EXPECT_LT(distances, 99.7);
 }
 
+// Of x = t²/2m, pushed by 1 N, the derivative by the mass is −t²/2m²; the residuals have nine degrees of freedom left.
+// Steps of a hundredth, as of a coarse integration, would leave errors of their square.
+TEST(Tune, ADeviationIsThatOfLinearLeastSquaresAtTheValueFound) {
+  const TuneFolder folder;
+  std::string text = "t[s],slide\n";
+  std::vector<double> times, measured;
+  for (int i = 1; i <= 10; ++i) {
+    times.push_back(0.1 * i);
+    measured.push_back(times.back() * times.back() / 4.2 + (i % 2 == 0 ? 1e-3 : -1e-3));
+    text += fmt::format("{},{}\n", times.back(), measured.back());
+  }
+  folder.write("data.csv", text);
+  TuneQuestion question;
+  question.parameters = {"bodies.block.mass"};
+  const TuneResult result = folder.tuned(question, R"(format: withy/1
+integrator: {name: dopri5, rtol: 1e-4, atol: 1e-6}
+time: {end: 1, output: 0.1}
+bodies: {block: {type: rigid, mass: 2}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+loads: {push: {type: hinge-effort, hinge: slide, value: 1}}
+)");
+  ASSERT_TRUE(result.converged()) << result.trouble;
+  const double mass = result.parameters[0].value;
+  double squares = 0, slopes = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double square = times[i] * times[i];
+    squares += std::pow(square / (2 * mass) - measured[i], 2);
+    slopes += std::pow(square / (2 * mass * mass), 2);
+  }
+  ASSERT_TRUE(result.parameters[0].deviation);
+  EXPECT_NEAR(*result.parameters[0].deviation / std::sqrt(squares / 9 / slopes), 1, 2e-6);
+}
+
 TEST(Tune, KeepsUnitsAndTheSameBitsWhateverTheJobs) {
   const TuneFolder folder;
   folder.measure({}, 1e-3, 3);

@@ -50,13 +50,16 @@ TEST(Inverse, OfAPendulumIsTheClosedForm) {
   const auto& t = found.at("t[s]");
   const auto& effort = found.at("pivot.motion_effort[N m]");
   ASSERT_EQ(t.size(), 151U);
-  double peak = 0;
+  double peak = 0, power = 0;
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double truth = -0.4 * 2 * std::sin(2 * t[i]) + 1.2 * 9.81 * 0.5 * std::sin(angle(t[i]));
     EXPECT_NEAR(effort[i], truth, 2e-3) << t[i];
     peak = std::max(peak, std::abs(truth));
+    power = std::max(power, std::abs(truth * (std::cos(2 * t[i]) + 0.1)));
   }
-  EXPECT_NEAR(std::abs(json::parse(f.out).at("drives").at("pivot.0").at("peak_effort").get<double>()), peak, 2e-3);
+  const json drive = json::parse(f.out).at("drives").at("pivot.0");
+  EXPECT_NEAR(std::abs(drive.at("peak_effort").get<double>()), peak, 2e-3);
+  EXPECT_NEAR(std::abs(drive.at("peak_power").get<double>()), power, 4e-3);
 }
 
 /// Of the driven arm, one mode a link: time and resolution of what follows.

@@ -155,7 +155,7 @@ void expect_discrete_states_kept(const Start& start) {
 }
 
 /// One stepper goes on, another is saved and restored after every step and restarted as often: their states and
-/// counts agree bit by bit.
+/// counts agree bit by bit, and what is within their steps.
 template <class Start>
 void expect_the_same_when_resumed(const Start& start, const EquationsOfMotion& equations, const State& initial) {
   const std::unique_ptr<Stepper> whole = start(equations, initial);
@@ -171,6 +171,11 @@ void expect_the_same_when_resumed(const Start& start, const EquationsOfMotion& e
       ASSERT_EQ(pieces->state().time, whole->state().time);
       ASSERT_EQ(std::memcmp(pieces->state().y.data(), whole->state().y.data(), state.y.size() * sizeof(double)), 0);
       EXPECT_EQ(pieces->memory(), whole->memory());
+      std::vector<double> inside(state.y.size()), here(state.y.size());
+      const double t = 0.3 * state.time + 0.7 * whole->state().time;
+      whole->interpolate(t, inside);
+      pieces->interpolate(t, here);
+      EXPECT_EQ(here, inside) << "within the step";
     }
     whole->restart();
     pieces->restart();

@@ -1,9 +1,12 @@
 // Published frequencies of a blade and a tower.
+#include "withy/exchange/elastodyn.hpp"
+
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "withy/core/model/model.hpp"
 #include "withy/study/prepared.hpp"
@@ -89,6 +92,35 @@ TEST(ElastoDyn, ATowerHasDampingOfItsOwnInEachDirection) {
     ratios.push_back(modes.at("points").at(0).at("modes").at(k).at("damping_ratio").get<double>());
   EXPECT_NEAR(std::min(ratios[0], ratios[1]), 0.01, 1e-9);
   EXPECT_NEAR(std::max(ratios[0], ratios[1]), 0.04, 1e-9);
+}
+
+// Factors of the file are of one column each; ElastoDyn's twist is towards feather, about −x, in degrees; exponents may
+// be Fortran's.
+TEST(ElastoDyn, ColumnsHaveTheFactorAndTheSenseOfTheirOwn) {
+  const ElastoDynBeam blade = read_elastodyn(R"(------- ELASTODYN V1.00.* INDIVIDUAL BLADE INPUT FILE -------
+Blade of two rows
+---------------------- BLADE PARAMETERS --------
+   2   NBlInpSt    - stations
+   1.0   BldFlDmp(1) - %
+   2.0   BldFlDmp(2) - %
+   3.0   BldEdDmp(1) - %
+   1.5   AdjBlMs - factor
+   2.0   AdjFlSt - factor
+   5.0   AdjEdSt - factor
+---------------------- DISTRIBUTED BLADE PROPERTIES ----
+BlFract StrcTwst BMassDen FlpStff EdgStff
+(-) (deg) (kg/m) (Nm^2) (Nm^2)
+0.0 18.0 1.0D+2 1d8 2.0D+08
+1.0 -9.0 50 1E7 2e7
+)",
+                                             "blade.dat");
+  EXPECT_THAT(blade.mass_per_length, ElementsAre(150, 75));
+  EXPECT_THAT(blade.along_y, ElementsAre(2e8, 2e7));
+  EXPECT_THAT(blade.along_z, ElementsAre(1e9, 1e8));
+  EXPECT_THAT(blade.twist,
+              ElementsAre(testing::DoubleEq(-std::numbers::pi / 10), testing::DoubleEq(std::numbers::pi / 20)));
+  EXPECT_THAT(blade.damping_y, ElementsAre(0.01, 0.02));
+  EXPECT_THAT(blade.damping_z, ElementsAre(0.03));
 }
 
 /// A comma ends a number: of 0,7 % the rest would be a parameter called 7, and the blade undamped.

@@ -1,4 +1,6 @@
 // Models of MJCF have the accelerations that mechanics gives them, by hand; orientations in every form are the same.
+#include "withy/exchange/mjcf.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,6 +23,13 @@ using testing::HasSubstr;
 ImportedScene model_of(const std::string& inside) {
   const Scratch file(".xml", "<mujoco>" + inside + "</mujoco>");
   return imported({file.file(), {}, false, 0, 0});
+}
+
+Tree tree_of(const std::string& inside, bool mend_inertias = false) {
+  Diagnostics diagnostics;
+  Tree tree = read_mjcf(read_xml("<mujoco>" + inside + "</mujoco>", "model.xml"), mend_inertias, diagnostics);
+  EXPECT_TRUE(diagnostics.ok());
+  return tree;
 }
 
 host::Equations equations_of(const std::string& inside) {
@@ -199,6 +208,62 @@ TEST(Mjcf, ASpringdamperIsAsStiffAsTheInertiaThatTheJointFeelsAsks) {
     EXPECT_NEAR(all.at("b.rate"), ab[1], 1e-12 * ab.norm()) << option;
     EXPECT_NEAR(all.at("c.rate"), -spring * 8 * 0.5 / 4, 1e-12) << option;
   }
+}
+
+// On a ball with armature, about the axis they share: 0.5 − 0.5²/(0.25 + 0.5 + 0.25).
+TEST(Mjcf, AJointFeelsTheArmatureOfAJointOfSeveralMotionsToo) {
+  EXPECT_THAT(model_of(R"(<worldbody><body><joint name="ball" type="ball" armature="0.25"/>
+<inertial mass="1" pos="0 0 0" diaginertia="0.25 0.25 0.25"/>
+<body><joint name="j" springdamper="0.5 0.3"/><inertial mass="1" pos="0 0 0" diaginertia="0.5 0.5 0.5"/></body></body>
+</worldbody>)")
+                  .remarks,
+              testing::Contains(HasSubstr("for the inertia 0.25 that the joint feels")));
+}
+
+// Coordinates of a file begin at `ref` where the scene's are zero, and so does where its springs are slack.
+TEST(Mjcf, ASpringIsSlackWhereTheFileSaysInTheCoordinateOfTheScene) {
+  const Tree tree = tree_of(R"(<worldbody><body>
+<joint name="slide" type="slide" stiffness="3" springref="0.5" ref="0.2"/><joint stiffness="3" springref="50" ref="20"/>
+<inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/></body></worldbody>)");
+  EXPECT_NEAR(tree.joints[0].free_position, 0.3, 1e-15);
+  EXPECT_NEAR(tree.joints[1].free_position, std::numbers::pi / 6, 1e-15);
+}
+
+// The pose of a body is that of its first joint; the others have the body's frame where that has brought it.
+TEST(Mjcf, ABodyWithSeveralJointsIsPlacedOnce) {
+  const Tree tree = tree_of(R"(<worldbody><body pos="1 2 3" quat="0 1 0 0">
+<joint type="slide" axis="1 0 0" pos="0 0 0.5"/><joint axis="0 1 0" pos="0.1 0 0"/>
+<inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/></body></worldbody>)");
+  ASSERT_EQ(tree.joints.size(), 2U);
+  EXPECT_EQ(tree.joints[0].offset.p, Vector3(1, 2, 2.5)) << "half a turn about x";
+  EXPECT_EQ(tree.joints[1].offset.p, Vector3(0.1, 0, 0));
+  EXPECT_EQ(tree.joints[1].offset.R, Matrix3::Identity());
+}
+
+TEST(Mjcf, AChildclassIsThatOfBodiesWithinUntilOneHasAnother) {
+  const std::string inertial = "<inertial mass='1' pos='0 0 0' diaginertia='1 1 1'/>";
+  const Tree tree = tree_of(
+      "<default><default class='soft'><joint damping='2'/></default><default class='hard'><joint "
+      "damping='9'/></default>"
+      "</default><worldbody><body childclass='soft'><joint/>" +
+      inertial + "<body><joint/>" + inertial + "<body childclass='hard'><joint/>" + inertial +
+      "</body></body></body><body><joint/>" + inertial + "</body></worldbody>");
+  std::vector<double> damping;
+  for (const Joint& joint : tree.joints) damping.push_back(joint.damping);
+  EXPECT_THAT(damping, ElementsAre(2, 2, 9, 0));
+}
+
+// Of 1 + 2 n nᵀ the second moments are 3/2, 3/2 and −1/2 along n: without the last it is (1 + n nᵀ) 3/2.
+TEST(Mjcf, AMendedInertiaKeepsItsPrincipalAxes) {
+  const Vector3 n = Vector3(1, 2, -2) / 3;
+  const Matrix3 given = Matrix3::Identity() + 2 * n * n.transpose();
+  std::ostringstream inside;
+  inside.precision(17);
+  inside << "<worldbody><body><joint/><inertial mass='1' pos='0 0 0' fullinertia='" << given(0, 0) << ' ' << given(1, 1)
+         << ' ' << given(2, 2) << ' ' << given(0, 1) << ' ' << given(0, 2) << ' ' << given(1, 2)
+         << "'/></body></worldbody>";
+  const Matrix3 mended = tree_of(inside.str(), true).links[0].inertia;
+  EXPECT_LT((mended - 1.5 * (Matrix3::Identity() + n * n.transpose())).norm(), 1e-14);
 }
 
 /// In MuJoCo axisangle, euler, xyaxes and zaxis are one attribute, which counts before `quat`, wherever that stands.

@@ -7,7 +7,9 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
+#include <sstream>
 #include <tuple>
 
 #include "withy/core/model/model.hpp"
@@ -136,6 +138,27 @@ hinges:
           << here.states()[i].name << " for " << there.states()[i].name;
   }
   EXPECT_TRUE(urdf.remarks.empty());
+}
+
+// Where roll and yaw are about one axis rounding makes any angles of them: all three have to fit together.
+TEST(Urdf, FramesAtAPitchOfNinetyDegreesAreWhereTheyWere) {
+  for (const double pitch : {0.5, -0.5}) {
+    for (const double roll : {0.0, 0.4, -2.0}) {
+      const Eigen::Quaterniond q(Eigen::AngleAxisd(pitch * std::numbers::pi, Vector3::UnitY()) *
+                                 Eigen::AngleAxisd(roll, Vector3::UnitX()));
+      std::ostringstream text;
+      text.precision(17);
+      text << "format: withy/1\nbodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\nhinges: {h: {type: "
+              "revolute, axis: [0, 0, 1], parent: world, child: a, offset: {orientation: ["
+           << q.w() << ", " << q.x() << ", " << q.y() << ", " << q.z() << "]}}}\n";
+      const auto prepared = host::Scene::parse(plugins(), text.str()).prepare();
+      const std::string urdf = write_urdf(prepared->model(), "r").text;
+      Diagnostics diagnostics;
+      const Tree back = read_urdf(read_xml(urdf, "r.urdf"), false, false, diagnostics);
+      ASSERT_EQ(back.joints.size(), 1U);
+      EXPECT_LT((back.joints[0].offset.R - q.toRotationMatrix()).norm(), 1e-14) << pitch << ", " << roll;
+    }
+  }
 }
 
 TEST(Urdf, AJointWithTheNameOfAColumnOfAllResultsGetsAnother) {

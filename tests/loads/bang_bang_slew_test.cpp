@@ -40,6 +40,12 @@ loads: {slew: {type: bang-bang-slew, hinges: {axle: {from: 0.4, to: -0.5, limit:
   std::vector<double> tau(1);
   load.add(0.1, {}, {}, tau, {});
   EXPECT_EQ(tau[0], -2);
+  // From each instant on: steps that begin there are of what follows.
+  for (const auto& [t, effort] : {std::pair(load.discontinuities()[1], 2.0), {load.end(), 0.0}}) {
+    tau[0] = 0;
+    load.add(t, {}, {}, tau, {});
+    EXPECT_EQ(tau[0], effort) << t;
+  }
 }
 
 // The same search on the closed-form equations of the rigid arm, with steps fine enough for the digits given. Limits of

@@ -9,6 +9,7 @@
 #include "withy/core/plugin/sensor.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/tests/loads/control_scenes.hpp"
+#include "withy/tests/loads/shown_outputs.hpp"
 
 namespace withy {
 namespace {
@@ -66,6 +67,16 @@ TEST(Control, ActuatorFollowsItsCommandWithinItsLimits) {
     greatest = std::max(greatest, state.y[2]);
   }
   EXPECT_NEAR(before, 1.5, 1e-6);
+}
+
+// (2 s + 3)/(s + 4) of a step: 2 at once, 3/4 in the end.
+TEST(Control, ATransferFunctionWithAsManyZerosAsPolesPassesItsInputOn) {
+  const test::Shown s(test::turntable + R"(initial: {hinges: {axle: {position: [1]}}}
+loads: {lead: {type: transfer-function, of: axle, to: nothing, numerator: [2, 3], denominator: [1, 4]}}
+outputs: {seen: {type: control, of: lead, show: command}}
+)");
+  const std::vector<double> v = s["seen.command"];
+  for (std::size_t k = 0; k < v.size(); ++k) EXPECT_NEAR(v[k], 0.75 + 1.25 * std::exp(-4 * s.times[k]), 1e-8);
 }
 
 TEST(Control, MotorRunsUpToWhereItGeneratesItsVoltage) {

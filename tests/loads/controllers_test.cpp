@@ -221,6 +221,19 @@ TEST(RigidInverseDynamics, bang_bang_takes_one_effort_and_its_opposite) {
   EXPECT_EQ(s.scene.model->loads()[0].load->discontinuities(), (std::vector<double>{0, 0.75, 1.5}));
 }
 
+// Near its limit, which it approaches smoothly, both gains count less.
+TEST(PdController, differentiates_itself_near_its_limit) {
+  Registry registry = load_registry();
+  const auto servo = make_plugin<Load>(registry, "pd-controller",
+                                       {{"law", Value(std::string("constant"))},
+                                        {"hinges", Value::map({{"elbow", Value::map({{"to", Value(1.0)},
+                                                                                     {"component", Value(0.0)},
+                                                                                     {"stiffness", Value(3.0)},
+                                                                                     {"damping", Value(2.0)},
+                                                                                     {"limit", Value(4.0)}})}})}});
+  test::expect_load_derivatives(*servo, two_link_arm(2));
+}
+
 TEST(Controllers, conform) {
   Registry registry = load_registry();
   const Model model = two_link_arm(2);

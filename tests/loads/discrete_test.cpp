@@ -197,6 +197,17 @@ events:
   EXPECT_LT(s.summary.energy_drift, 1e-9);
 }
 
+// Where it begins beyond a level it is on, to either side of what it holds: x = ±τ t²/(2 J) at first.
+TEST(HingeRelay, is_on_at_once_on_the_side_of_its_target_where_it_begins) {
+  for (const double target : {0.3, -0.3}) {
+    test::LoadedScene s(turntable +
+                            "loads: {jets: {type: hinge-relay, hinge: axle, effort: 0.1, on: 0.1, off: 0.02, target: " +
+                            std::to_string(target) + "}}\n",
+                        {"time.end=0.5"});
+    EXPECT_NEAR(s.position(s.run().back(), "axle"), std::copysign(0.1 * 0.25 / 0.4, target), 1e-12);
+  }
+}
+
 // s = x + T ẋ with T > 0 takes energy out until the motion is a limit cycle within the dead zone.
 TEST(HingeRelay, with_a_rate_comes_to_rest_within_its_dead_zone) {
   test::LoadedScene s(turntable + R"(loads:

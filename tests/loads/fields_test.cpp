@@ -100,6 +100,42 @@ TEST(GravityGradient, librates_a_flexible_boom_as_a_chain_of_rigid_links) {
   EXPECT_GT(std::abs(mine[0] - rigid), 1e-3 * rigid) << "the boom is to be flexible enough to be seen";
 }
 
+/// Acceleration of a point of 2 kg at 0.5 m along x from a centre that is 10 m away, at rest.
+Vector3 acceleration_beside_a_centre(const std::string& field, double t) {
+  const LoadedScene c(
+      "format: withy/1\ntime: {end: 1}\nbodies: {p: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+      "hinges: {float: {type: free, parent: world, child: p}}\nloads: {field: {" +
+      field + ", center: [10, 0, 0]}}\n");
+  std::vector<double> y = c.scene.initial.y, y_dot(c.equations->size());
+  y[4] = 10.5;
+  Work work = c.equations->make_work();
+  EXPECT_TRUE(c.equations->derivatives(t, y, y_dot, work).ok());
+  return {y_dot[7 + 3], y_dot[7 + 4], y_dot[7 + 5]};
+}
+
+/// n² (3 e eᵀ − 1) p with e an eighth of an orbit on; in axes of the orbit 2 n² along e and n² of turning.
+TEST(GravityGradient, goes_round_with_the_orbit_about_the_centre_given) {
+  constexpr double n = 0.4;
+  const std::string orbit = "type: gravity-gradient, rate: 0.4";
+  EXPECT_LT((acceleration_beside_a_centre(orbit, std::numbers::pi / 4 / n) - n * n * Vector3(0.25, 0.75, 0)).norm(),
+            1e-14);
+  EXPECT_LT((acceleration_beside_a_centre(orbit + ", axes: orbit", 1) - n * n * Vector3(1.5, 0, 0)).norm(), 1e-14);
+}
+
+/// Ω² p outwards and, while the rate Ω = 0.4 + 0.3 t grows, 0.3 p backwards.
+TEST(RotatingFrame, turns_about_the_centre_given_ever_faster) {
+  const Vector3 found = acceleration_beside_a_centre("type: rotating-frame, rate: 0.4, acceleration: 0.3", 2);
+  EXPECT_LT((found - Vector3(0.5, -0.15, 0)).norm(), 1e-14);
+}
+
+TEST(BaseExcitation, ends_where_its_law_does) {
+  const LoadedScene c(
+      "format: withy/1\nbodies: {p: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}\nhinges: {float: {type: free, "
+      "parent: world, child: p}}\nloads: {base: {type: base-excitation, law: table, table: [[0, 0, 0, 0], [0.3, 1, 0, "
+      "0], [0.7, 0, 0, 0]]}}\n");
+  EXPECT_EQ(c.scene.model->loads()[0].load->end(), 0.7);
+}
+
 /// Of eccentricity 0.3; a sphere, which is attracted as a point, is where it began, and a dumbbell that tumbles keeps
 /// its energy as well.
 TEST(PointGravity, keeps_the_energy_of_a_hundred_orbits) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "withy/core/plugin/kinks.hpp"
 #include "withy/tests/conformance/load_suite.hpp"
 #include "withy/tests/loads/load_plugins.hpp"
 #include "withy/tests/loads/scene_run.hpp"
@@ -119,12 +120,37 @@ TEST(HingeLimit, has_no_kink_in_the_coordinate) {
   }
 }
 
+TEST(HingeLimit, tells_how_far_the_nearest_stop_is) {
+  const Model model = two_link_arm(2);
+  const auto bound = passive("hinge-limit", stops)->bind(model);
+  const std::size_t elbow = model.layout().hinge("elbow")->position;
+  std::vector<double> positions(model.layout().positions, 7.0), margin(1);
+  for (const auto& [x, left] : {std::pair(-0.9, 0.1), {0.25, 0.25}, {-1.5, -0.5}, {0.75, -0.25}}) {
+    positions[elbow] = x;
+    dynamic_cast<const Kinks&>(*bound).kinks(positions, {}, margin);
+    EXPECT_NEAR(margin[0], left, 1e-15) << x;
+  }
+}
+
 TEST(PassiveLoads, conform) {
   const Model model = two_link_arm(2);
   test::expect_load_conforms(*passive("hinge-spring", {{"stiffness", Value(30.0)}, {"free_position", Value(0.2)}}),
                              model);
   test::expect_load_conforms(*passive("hinge-friction", {{"effort", Value(3.0)}, {"rate_scale", Value(0.01)}}), model);
   test::expect_load_conforms(*passive("hinge-limit", {{"lower", Value(0.5)}, {"stiffness", Value(10.0)}}), model);
+}
+
+// The suite's states are within 0.3 of zero: beyond these stops.
+TEST(PassiveLoads, differentiate_themselves_at_either_stop_and_in_slow_friction) {
+  const Model model = two_link_arm(2);
+  for (const auto& [lower, upper] : {std::pair(1.0, 2.0), {-2.0, -1.0}})
+    test::expect_load_derivatives(*passive("hinge-limit", {{"lower", Value(lower)},
+                                                           {"upper", Value(upper)},
+                                                           {"stiffness", Value(10.0)},
+                                                           {"dissipation", Value(0.8)}}),
+                                  model);
+  test::expect_load_derivatives(*passive("hinge-friction", {{"effort", Value(3.0)}, {"rate_scale", Value(0.4)}}),
+                                model);
 }
 
 // J ẍ + c ẋ + k (x − x₀) = p, J = 0.2: with k = 5, c = 0.4 the frequency is 5 rad/s, the damping ratio 0.2.

@@ -57,6 +57,8 @@ TEST(Input, by_a_table_acts_as_efforts_and_forces_of_the_same_values) {
   c: {type: force, frame: boom.tip, following: true, law: steps, table: [[0.05, 0, 0, 0.3], [0.35, 0, 0, 0]]}
   d: {type: torque, frame: hub, law: table, table: [[0, 0, -0.1, 0], [0.5, 0, -0.5, 0]]}
 )");
+  for (const auto& [name, unit] : {std::pair("a", "N m"), {"b", "N"}, {"c", "N"}, {"d", "N m"}})
+    EXPECT_EQ(load_of(*inputs.scene.model, name).load->input()->unit(), unit) << name;
   const std::vector<State> by_inputs = inputs.run(), by_efforts = efforts.run();
   ASSERT_EQ(by_inputs.size(), by_efforts.size());
   for (std::size_t i = 0; i < by_inputs.size(); ++i) {

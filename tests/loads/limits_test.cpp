@@ -223,6 +223,20 @@ events: {off: {at: 0.55, do: {switch_off: one}}, on: {at: 1.05, do: {switch_on: 
   }
 }
 
+// Each command acts 0.3 s after its sample, also where the load is off for less than a sample until one: those on their
+// way move up once then.
+TEST(Delay, OfASampledControllerIsTheSameWhereItIsSwitchedOnAtASample) {
+  const Shown s(test::turntable + R"(outputs: {u: {type: effort, hinge: axle}}
+loads: {one: {type: expression, value: t, hinge: axle, sample: 0.1, delay: 0.3}}
+events: {off: {at: 0.95, do: {switch_off: one}}, on: {at: 1.0, do: {switch_on: one}}}
+)");
+  for (std::size_t k = 0; k < s.times.size(); ++k) {
+    const double t = s.times[k], since = std::remainder(t, 0.1);
+    if (t < 0.301 || t > 1.6 || std::abs(since) < 1e-3 || std::abs(t - 0.95) < 1e-3) continue;
+    ASSERT_NEAR(s["u"][k], t > 0.95 && t < 1 ? 0 : std::floor(10 * t) / 10 - 0.3, 1e-12) << t;
+  }
+}
+
 TEST(HingeEffort, IsOfTheLawThatItsValuesAreOf) {
   const auto end = [](const std::string& law) {
     LoadedScene s(test::turntable + "loads: {push: {type: hinge-effort, hinge: axle, " + law + "}}\n");

@@ -30,6 +30,19 @@ TEST(MotionLaws, conform) {
       *motion("table", {{"table", Value::list({list_of({0, 1}), list_of({0.5, 2}), list_of({0.9, -1})})}}));
 }
 
+// Between two rows the cubic that has the rates given there, (x₀ + x₁)/2 + (v₀ − v₁) T/8 in the middle; beyond them
+// straight lines.
+TEST(MotionLaws, of_tables_have_the_rates_of_their_ends) {
+  const auto law = motion("table", {{"table", Value::list({list_of({0, 1}), list_of({2, 4})})},
+                                    {"start_rate", Value(2.0)},
+                                    {"end_rate", Value(-1.0)}});
+  EXPECT_NEAR(law->at(1).position, 2.5 + 3 * 2.0 / 8, 1e-14);
+  EXPECT_NEAR(law->at(3).position, 3, 1e-14);
+  EXPECT_NEAR(law->at(3).rate, -1, 1e-14);
+  EXPECT_NEAR(law->at(-1).position, -1, 1e-14);
+  EXPECT_NEAR(law->at(-1).rate, 2, 1e-14);
+}
+
 TEST(MotionLaws, of_formulas_have_exact_derivatives) {
   const auto law = [](const char* text) { return motion("expression", {{"value", Value(std::string(text))}}); };
   expect_motion_conforms(*law("0.3 * sin(5*t)^2 / (2 + cos(t)) - atan(t^3) + sqrt(1 + t^2) - (-t)^2"));
@@ -44,6 +57,19 @@ TEST(MotionLaws, of_formulas_have_exact_derivatives) {
               HasSubstr("there is nothing called 'axle'"));
   EXPECT_THAT(problem_of(turntable + "motions: {m: {type: expression, hinge: axle, value: sqrt(t - 1)}}\n"),
               HasSubstr("/motions/m: has no finite coordinate and rate at 0 s"));
+}
+
+/// At a constant rate the work is all that a method's error control can see: that of the weight, m g c sin θ.
+TEST(DrivenHinge, has_its_work_to_the_tolerance_with_every_method) {
+  for (const char* method : {"dopri5", "dop853", "rk4-adaptive", "radau"}) {
+    LoadedScene s("format: withy/1\ngravity: [0, -9.81, 0]\ntime: {end: 2}\nintegrator: {name: " + std::string(method) +
+                  R"(, rtol: 1e-7, atol: 1e-9}
+bodies: {arm: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}}
+motions: {turn: {type: constant-rate, hinge: axle, rate: 5}}
+)");
+    EXPECT_NEAR(s.run().back().y.back(), 9.81 * std::sin(10), 1e-5) << method;
+  }
 }
 
 /// Up to there the run is kept; the mass matrix is not said to be the reason.

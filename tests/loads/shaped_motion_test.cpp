@@ -117,6 +117,12 @@ TEST(ShapedMotion, without_a_shaper_is_what_it_shapes) {
   for (const double t : {-0.1, 0.2, 0.5, 1.0}) EXPECT_EQ(law.at(t).acceleration, other.at(t).acceleration) << t;
 }
 
+TEST(ShapedMotion, declares_the_jumps_of_every_copy) {
+  LoadedScene s(turntable + "motions: {turn: {hinge: axle, " + shaped("zv", "[1, 0]").substr(1) + "}\n");
+  EXPECT_THAT(s.scene.model->motions()[0].motion->discontinuities(),
+              testing::Pointwise(testing::DoubleEq(), {0.0, 0.5, 0.6, 1.1}));
+}
+
 /// The disk in a loop with a controller: what it follows is shaped, and the run lasts until the end of that.
 TEST(ShapedMotion, is_followed_by_controllers) {
   const std::string motion = shaped("zv", "[1, 0]");

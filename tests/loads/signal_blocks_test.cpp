@@ -113,6 +113,31 @@ loads: {noise: {type: noise, deviation: 0.3, seed: 11, sample: 0.001}}
   EXPECT_NEAR(beside / n, 0, 4 * 0.09 / std::sqrt(n)) << "one sample says nothing of the next";
 }
 
+// Quotients of times and periods are rounded: 0.7/0.1 is less than 7.
+TEST(Digital, NoiseIsDrawnAnewAtEverySample) {
+  const std::vector<double> x = Shown(test::turntable + R"(outputs: {n: {type: control, of: noise, show: command}}
+loads: {noise: {type: noise, deviation: 0.3, sample: 0.1}}
+)",
+                                      {"time.output=0.1", "time.end=10"})["n.command"];
+  // The first and the last row are of their own samples, the others of those before.
+  for (std::size_t k = 2; k + 1 < x.size(); ++k) EXPECT_NE(x[k], x[k - 1]) << k;
+}
+
+// At rest at −0.3 from the start on.
+TEST(OverTime, MeansOfWhatRestsAreItFromTheFirstInstant) {
+  const Shown s(test::turntable + R"(initial: {hinges: {axle: {position: [-0.3]}}}
+loads:
+  mean: {type: moving-average, of: axle, window: 0.05, sample: 0.01}
+  size: {type: over-time, of: axle, what: rms}
+outputs:
+  mean_seen: {type: control, of: mean, show: command}
+  size_seen: {type: control, of: size, show: command}
+)",
+                {"time.end=0.1"});
+  for (const double mean : s["mean_seen.command"]) EXPECT_NEAR(mean, -0.3, 1e-15);
+  for (const double size : s["size_seen.command"]) EXPECT_NEAR(size, 0.3, 1e-9);
+}
+
 TEST(Filter, AChainKeepsTheUnitOfWhatItMeasures) {
   const Shown s(test::turntable + R"(loads:
   smooth: {type: filter, of: axle.rate, cutoff: 20 Hz}

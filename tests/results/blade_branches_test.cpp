@@ -94,6 +94,7 @@ TEST(BladeBranches, TheLineOfOneTurnFollowsRatesOfEitherSign) {
   EXPECT_THAT(picture({0, -2, -4}), HasSubstr("once a turn"));
   EXPECT_THAT(picture({4, 2, 0}), HasSubstr("once a turn"));
   EXPECT_THAT(picture({-4, 0, 4}), HasSubstr("once a turn"));
+  EXPECT_THAT(picture({-4, -2}), HasSubstr("once a turn"));
   EXPECT_THAT(picture({150, 300}), Not(HasSubstr("once a turn"))) << "it is above the picture";
   EXPECT_THAT(picture({30, 60}),
               testing::AllOf(HasSubstr("once a turn"), HasSubstr("3 times a turn"), Not(HasSubstr("6 times a turn"))));

@@ -53,6 +53,17 @@ TEST(PlottedRuns, ColumnsOfOneNameInTwoUnitsHaveAPanelEach) {
   }
 }
 
+TEST(PlottedRuns, AComponentThatIsRoundingIsDrawnAsNothingBesideTheOthers) {
+  DecimatedTable table(100, 0);
+  table.begin({{"t", "s"}, {"tip.x", "m"}, {"tip.y", "m"}, {"root.y", "m"}});
+  for (int i = 0; i <= 10; ++i) table.row(std::vector<double>{0.2 * i, 0.3 * i, 1e-17 * i, 2e-17 * i});
+  const std::vector<Panel> panels = table_panels({{"a", &table}}, {"tip.x", "tip.y", "root.y"});
+  ASSERT_EQ(panels.size(), 3U);
+  EXPECT_EQ(panels[0].y_range, (std::pair<double, double>(0, 3)));
+  EXPECT_EQ(panels[1].y_range, (std::pair<double, double>(-3, 3)));
+  EXPECT_NEAR(panels[2].y_range.second, 2e-16, 1e-30) << "of another vector";
+}
+
 TEST(PlottedRuns, AreNamedByTheShortestPathsThatDiffer) {
   EXPECT_THAT(run_names({"cmp/time_scale=1.0/quadratic/results.csv", "cmp/time_scale=1.2/quadratic/results.csv",
                          "cmp/time_scale=1.2/exact/results.csv"}),

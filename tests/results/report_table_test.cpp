@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,6 +50,31 @@ TEST(DerivedColumns, AttitudesAreFollowedFromRowToRowOverWholeTurns) {
     EXPECT_NEAR(angles[2], 24 * t * in_degrees, 1e-9) << t;
     EXPECT_EQ(angles[1], 0);
   }
+}
+
+// R = Rx(0.4) Ry(-0.7) Rz(1.1).
+TEST(DerivedColumns, AttitudesAreTurnsAboutXThenYThenZ) {
+  const Eigen::Quaterniond q(Eigen::AngleAxisd(0.4, Vector3::UnitX()) * Eigen::AngleAxisd(-0.7, Vector3::UnitY()) *
+                             Eigen::AngleAxisd(1.1, Vector3::UnitZ()));
+  const Model nothing({}, {}, Vector3::Zero());
+  DerivedColumns derived(of_attitude, nothing, nullptr);
+  std::vector<double> angles;
+  derived.append(std::vector{0.0, q.w(), q.x(), q.y(), q.z()}, angles);
+  ASSERT_EQ(angles.size(), 3U);
+  EXPECT_NEAR(angles[0], 0.4 * in_degrees, 1e-12);
+  EXPECT_NEAR(angles[1], -0.7 * in_degrees, 1e-12);
+  EXPECT_NEAR(angles[2], 1.1 * in_degrees, 1e-12);
+}
+
+// Energy is lost that neither moves nor is stored nor was put in.
+TEST(DerivedColumns, DriftIsTheEnergySinceTheStartLessTheWork) {
+  const Model nothing({}, {}, Vector3::Zero());
+  DerivedColumns derived({{"t", "s"}, {"kinetic_energy", "J"}, {"potential_energy", "J"}, {"work", "J"}}, nothing,
+                         nullptr);
+  std::vector<double> drift;
+  derived.append(std::vector{0.0, 1.0, 2.0, 0.5}, drift);
+  derived.append(std::vector{1.0, 4.0, 8.0, 5.5}, drift);
+  EXPECT_EQ(drift, (std::vector{0.0, 4.0}));
 }
 
 /// A beam on a hinge in a formulation whose limits are of rates and deflections.

@@ -1,0 +1,38 @@
+// Margins of loops by hand: the nearest of several on each side, and the loop that is closed.
+#include <gtest/gtest.h>
+
+#include "withy/core/analysis/frequency_response.hpp"
+
+namespace withy {
+namespace {
+
+TEST(Margins, TheNearestOnEachSideCounts) {
+  Margins m;
+  m.gains = {{1, 8}, {2, 0.2}, {3, 3}, {4, 0.5}, {5, 0.1}};
+  m.phases = {{1, 1.2, 1.2}, {2, -0.3, 2.9}, {3, 0.4, 0.133}, {4, -0.8, 1.3}};
+  ASSERT_NE(m.upper(), nullptr);
+  ASSERT_NE(m.lower(), nullptr);
+  EXPECT_EQ(m.upper()->factor, 3);
+  EXPECT_EQ(m.lower()->factor, 0.5);
+  EXPECT_EQ(m.lag(), nullptr) << "a loop that is not stable has none";
+  m.stable = true;
+  m.last = 0.9;
+  EXPECT_EQ(m.lag()->angle, 0.4);
+  EXPECT_EQ(m.lead()->angle, -0.3);
+  EXPECT_EQ(m.delay()->delay, 0.133);
+  m.last = 1;
+  EXPECT_EQ(m.delay(), nullptr) << "where the gain never falls below one any dead time is too much";
+}
+
+// ẋ = −x + v, y = 2 x + v/2 with v = r − y: y = (2 x + r/2)/1.5.
+TEST(Margins, AClosedLoopPassesItsReferenceOnLessByWhatItFeedsBackAtOnce) {
+  const auto one = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
+  const LinearSystem closed = closed_loop({one(-1), one(1), one(2), one(0.5), 0}, 1);
+  EXPECT_NEAR(closed.A(0, 0), -1 - 2 / 1.5, 1e-15);
+  EXPECT_NEAR(closed.B(0, 0), 1 / 1.5, 1e-15);
+  EXPECT_NEAR(closed.C(0, 0), 2 / 1.5, 1e-15);
+  EXPECT_NEAR(closed.D(0, 0), 0.5 / 1.5, 1e-15);
+}
+
+}  // namespace
+}  // namespace withy
