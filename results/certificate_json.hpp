@@ -8,7 +8,7 @@
 
 namespace withy {
 
-/// The value of "certificate" in run.json; see docs/command-line.md.
+/// The value of "certificate" in run.json; see docs/results.md.
 nlohmann::ordered_json certificate_json(const Scene& scene, const RunSummary& summary,
                                         const study::Certificate& certificate);
 /// The content of run.json.

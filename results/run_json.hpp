@@ -9,7 +9,7 @@
 
 namespace withy {
 
-/// What run.json holds of a run, but for its certificate; see docs/command-line.md.
+/// What run.json holds of a run, but for its certificate; see docs/results.md.
 nlohmann::ordered_json run_json(const Scene& scene, const RunSummary& summary);
 
 /// `min` and `max` with their times, `mean`, `rms` and `integral` of each number, by its name.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures the trade of every scene of the gallery: tables into docs/measured and from there into
-# docs/trade.md, pictures into docs/pictures, everything into results/gallery. What is finished there is not run again: remove it for new measurements.
+# docs/gallery.md, pictures into docs/pictures, everything into results/gallery. What is finished there is not run again: remove it for new measurements.
 #
 #   scripts/gallery.sh               # all; names of scenes as arguments: those
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"

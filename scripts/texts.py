@@ -146,7 +146,7 @@ def tree_estimates():
 
 
 def figures():
-    """Frequencies and deflections that running text of trade.md and integrators.md compares with."""
+    """Frequencies and deflections that running text of gallery.md and integrators.md compares with."""
     def frequencies(scene, *words):
         modes = program.told("modes", scene, *words)["runs"][0]["points"][0]["modes"]
         return [abs(m["eigenvalue"][1]) for m in modes]
