@@ -253,7 +253,7 @@ std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string
 
 std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const std::string& label,
                           std::size_t count) {
-  Panel frequencies{label, "frequency [rad/s]", {0, 0}, {}, 420};
+  Panel frequencies{label, "damped frequency [rad/s]", {0, 0}, {}, 420};
   Panel growths{label, "growth [1/s]", {0, 0}, {}, growth_height};
   std::vector<std::string> legend;
   for (std::size_t r = 0; r < runs.size(); ++r) {

@@ -190,6 +190,7 @@ ZerosAndGain zeros(LinearSystem s) {
   double least = rounding_share * output * input / std::max(s.A.norm(), 1e-300);
   if (s.A.rows() == 0 || !(input > 0) || !(output > 0)) least = 0;
   double through = direct;
+  bool dropped = false;
   while (!(through > least)) {
     if (s.A.rows() == 0) return {};
     const double seen = drop_seen_state(s, scale);
@@ -198,12 +199,14 @@ ZerosAndGain zeros(LinearSystem s) {
     scale = std::max(s.A.norm(), s.C.norm());
     least = rounding_share * input;
     through = std::abs(s.D(0, 0));
+    dropped = true;
   }
   const double d = s.D(0, 0);
   const Eigen::MatrixXd through_d = s.B * s.C / d;
   Eigen::MatrixXd left = s.A - through_d;
-  // D is what is left of a vector as long as B.
-  const double size = s.A.norm() + through_d.norm() * std::max(1.0, s.B.norm() / std::abs(d));
+  // D of a state that was dropped is what is left of a vector as long as B, and known to the rounding of that; the
+  // system's own D is known to its own.
+  const double size = s.A.norm() + through_d.norm() * (dropped ? std::max(1.0, s.B.norm() / std::abs(d)) : 1.0);
   if (!s.sampled()) return {eigenvalues_with_zeros(left, 0, size), product * d};
   // As of poles: what the loop neither sees nor moves rests between samples, and stands at 1 with what else is there.
   left.diagonal().array() -= 1;

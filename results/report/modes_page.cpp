@@ -62,7 +62,8 @@ Json branch_json(const study::ModesOf& run, std::size_t branch) {
     if (first.size() == 0) first = shape;
     values.push_back({{"value", at.value},
                       {"hertz", m.eigenvalue.imag() / (2 * std::numbers::pi)},
-                      {"damping_ratio", m.rigid || m.eigenvalue.imag() == 0 ? Json() : Json(m.damping_ratio())},
+                      {"natural", m.frequency() / (2 * std::numbers::pi)},
+                      {"damping_ratio", m.rigid ? Json() : Json(m.damping_ratio())},
                       {"growth", m.growth()},
                       {"unstable", study::unstable(at, m)},
                       {"state", study::behaviour(at, m)},

@@ -1,6 +1,10 @@
 // Margins of loops by hand: the nearest of several on each side, and the loop that is closed.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <cmath>
+#include <complex>
+
 #include "withy/core/analysis/frequency_response.hpp"
 
 namespace withy {
@@ -32,6 +36,31 @@ TEST(Margins, AClosedLoopPassesItsReferenceOnLessByWhatItFeedsBackAtOnce) {
   EXPECT_NEAR(closed.B(0, 0), 1 / 1.5, 1e-15);
   EXPECT_NEAR(closed.C(0, 0), 2 / 1.5, 1e-15);
   EXPECT_NEAR(closed.D(0, 0), 0.5 / 1.5, 1e-15);
+}
+
+/// Two decaying vibrations and the slightest direct way, as of an accelerometer far from the force.
+LinearSystem with_little_through(double through) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4, 4), B(4, 1), C(1, 4);
+  A.topLeftCorner(2, 2) << -0.3, 10, -10, -0.3;
+  A.bottomRightCorner(2, 2) << -0.2, 11, -11, -0.2;
+  B << 30, 0, 30, 0;
+  C << 1, 0.5, 0.8, -0.3;
+  return {A, B, C, Eigen::MatrixXd::Constant(1, 1, through), 0};
+}
+
+// Zeros so uncertain that any was within its error of a pole took poles out of the response, and off the static gain.
+TEST(Roots, OfASystemWithTheSlightestDirectWayAreAllSeen) {
+  for (const double through : {1e-4, 1e-6, 1e-8}) {
+    const LinearSystem system = with_little_through(through);
+    const ZerosAndGain found = zeros(system);
+    ASSERT_EQ(found.zeros.values.size(), 4);
+    EXPECT_EQ(found.gain, through);
+    const SeenRoots seen = seen_roots(system, known_poles(system), found.zeros);
+    EXPECT_EQ(seen.hidden.size(), 0) << through;
+    const std::complex<double> product = (-seen.zeros).prod() / (-seen.poles).prod() * found.gain;
+    const double direct = (system.D - system.C * system.A.inverse() * system.B)(0, 0);
+    EXPECT_NEAR(product.real(), direct, 1e-6 * std::abs(direct)) << through;
+  }
 }
 
 }  // namespace

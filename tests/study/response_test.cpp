@@ -42,6 +42,15 @@ loads:
   }
 }
 
+// The first example of the page: an accelerometer that hardly feels the torque at once.
+TEST(Response, OfTheSlewsAccelerometerHasTheStaticGainOfItsCurve) {
+  const Prepared prepared = prepare(SceneValues::read(WITHY_SOURCES "/scenes/loads-of-the-slew.yaml"), plugins());
+  const Response r = response(at_start(prepared), {"shoulder", "box.y", 1e-4, 10, 5, {}});
+  ASSERT_EQ(r.integrators, 0);
+  const std::complex<double> slow = r.values.front().value;
+  EXPECT_NEAR(r.static_gain, slow.real(), 1e-5 * std::abs(slow));
+}
+
 /// Its name is the beginning of its rate's.
 TEST(Response, OfACoordinateIsThatOfNoRate) {
   const Prepared prepared = scene_of(R"(

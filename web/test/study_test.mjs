@@ -160,6 +160,8 @@ async function check_loops(browser, folder, run, troubles) {
     if (!m) return;
     close(m.growth, exact.eigenvalue[0]);
     close(m.hertz, exact.eigenvalue[1] / 2 / Math.PI);
+    close(m.natural, exact.hertz);
+    close(m.damping_ratio, exact.damping_ratio);
     ++shown;
   }));
   assert.ok(runs[0].branches.some(b => b.at.includes(null)), 'a pair parts');

@@ -4,8 +4,10 @@ import { dashes } from '../data.js';
 import { element } from '../words.js';
 import { Figure, draw, legend, number, table_of } from './figure.js';
 
+// Diagrams show Im λ, the damped frequency; tables, as modes.csv, the natural one, |λ|. Of equal blades only the first is known.
 const hertz = m => m.hertz;
 const radians = m => 2 * Math.PI * m.hertz;
+const natural = m => m.natural ?? m.hertz;
 // Equal blades have modes as what does not turn sees them, and those of the equations at one angle.
 const standing = 'where the rotor does not turn', turning = 'the blades, at one angle';
 
@@ -117,7 +119,7 @@ export class Modes {
 
   campbell() {
     const of = this.unit === 'Hz' ? hertz : radians;
-    const figure = this.figure(`frequency [${this.unit}]`, of, { include: [0], height: 520, right: 210 });
+    const figure = this.figure(this.seen_from === standing ? `frequency [${this.unit}]` : `damped frequency [${this.unit}]`, of, { include: [0], height: 520, right: 210 });
     this.per_rev(figure);
     this.label(figure, of);
     figure.element.id = 'campbell';
@@ -129,7 +131,7 @@ export class Modes {
     const of = this.unit === 'Hz' ? hertz : radians;
     const curves = this.branches.filter(b => !b.hidden).map(b => ({ b, points: b.at.map(m => (m ? [m.growth, of(m), m] : [null, null])) }));
     const all = k => curves.flatMap(c => c.points.map(p => p[k])).filter(v => v != null);
-    const figure = new Figure({ height: 420, x: { label: 'growth [1/s]', values: all(0), include: [0] }, y: { label: `frequency [${this.unit}]`, values: all(1), include: [0] } });
+    const figure = new Figure({ height: 420, x: { label: 'growth [1/s]', values: all(0), include: [0] }, y: { label: `damped frequency [${this.unit}]`, values: all(1), include: [0] } });
     for (const { b, points } of curves) {
       figure.line(points, { stroke: b.color, 'stroke-width': 1.2, 'stroke-dasharray': b.dash });
       const first = points.findIndex(p => p[2]);
@@ -196,7 +198,7 @@ export class Modes {
   }
 
   about(b, m) {
-    return [b.name, this.swept ? `${this.data.label} ${number(m.value)}` : '', m.hertz === 0 && m.growth ? `growth ${number(m.growth)}/s` : `${number(hertz(m))} Hz, ${number(radians(m))} rad/s`, m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
+    return [b.name, this.swept ? `${this.data.label} ${number(m.value)}` : '', natural(m) || !m.growth ? `${number(natural(m))} Hz, ${number(2 * Math.PI * natural(m))} rad/s` : '', m.hertz === 0 && m.growth ? `growth ${number(m.growth)}/s` : '', m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
   }
 
   // Where the kinetic energy of the shape is, and how like the first shape of the branch it is.
@@ -222,7 +224,7 @@ export class Modes {
   table() {
     const rows = this.branches.map(b => ({ b, m: b.at.find(Boolean) }));
     const several = this.data.runs.length > 1 ? [['formulation', r => r.b.run.formulation]] : [];
-    const table = table_of([...several, ['mode', r => r.b.number ?? r.b.index + 1], ['frequency [Hz]', r => hertz(r.m), r => number(hertz(r.m))], ['[rad/s]', r => radians(r.m), r => number(radians(r.m))],
+    const table = table_of([...several, ['mode', r => r.b.number ?? r.b.index + 1], ['frequency [Hz]', r => natural(r.m), r => number(natural(r.m))], ['[rad/s]', r => 2 * Math.PI * natural(r.m), r => number(2 * Math.PI * natural(r.m))],
       ['damping ratio [%]', r => r.m.damping_ratio == null ? null : 100 * r.m.damping_ratio, r => r.m.damping_ratio == null ? '–' : number(100 * r.m.damping_ratio)], ['growth [1/s]', r => r.m.growth, r => number(r.m.growth)], ['mostly', r => r.m.dominated_by], ['state', r => r.m.state ?? '–']], rows, r => this.choose(r.b, r.m));
     const frame = element('div', null, { class: 'scroll' });
     for (const run of this.data.runs) if (run.floquet) frame.append(...this.exponents(run));
