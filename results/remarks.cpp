@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <cctype>
-#include <charconv>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
+
+#include "withy/scene/units.hpp"
 
 namespace withy {
 
@@ -80,13 +81,6 @@ Parts parts_of(std::string_view text) {
   return parts;
 }
 
-/// What a text of digits is worth, whatever the locale.
-double number_of(const std::string& digits) {
-  double number = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  return number;
-}
-
 /// Remarks that differ in numbers alone and are counted.
 struct Counted {
   std::size_t times = 0;
@@ -95,8 +89,8 @@ struct Counted {
   void add(const std::vector<std::string>& numbers) {
     if (times++ == 0) least = greatest = numbers;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      if (number_of(numbers[i]) < number_of(least[i])) least[i] = numbers[i];
-      if (number_of(numbers[i]) > number_of(greatest[i])) greatest[i] = numbers[i];
+      if (plain_number(numbers[i]) < plain_number(least[i])) least[i] = numbers[i];
+      if (plain_number(numbers[i]) > plain_number(greatest[i])) greatest[i] = numbers[i];
     }
   }
   /// With the ranges of their numbers.

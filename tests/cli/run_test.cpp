@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "withy/tests/cli/process.hpp"
+#include "withy/tests/results/cells.hpp"
 
 namespace withy::test {
 namespace {
@@ -20,17 +21,6 @@ using testing::HasSubstr;
 // Diverges at about 0.05 s (theory: the inconsistent formulation at time scale 1).
 const std::vector<std::string> diverging = {
     "run", "scenes/two-link-slew.yaml", "--formulation", "inconsistent", "--out", "out"};
-
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> all(1);
-  for (const char c : line) {
-    if (c == ',')
-      all.emplace_back();
-    else
-      all.back() += c;
-  }
-  return all;
-}
 
 /// The cells below the head of a table.
 std::vector<std::string> all_cells(const std::string& table) {

@@ -39,20 +39,23 @@ struct Duffing {
   }
 };
 
+/// ẍ = −x + s(t).
+inline FunctionEquations pushed_oscillator(double (*force)(double)) {
+  FunctionEquations e(1, 1, [force](double t, std::span<const double> y, std::span<double> f) {
+    f[0] = y[1];
+    f[1] = -y[0] + force(t);
+    f[2] = 0;
+    return Evaluation{};
+  });
+  e.stiffness_ = {1};
+  return e;
+}
+
 /// ẍ = −x + s(t) from rest at 0; s jumps at 0.7 and 1.9.
 struct SwitchedOscillator {
   static constexpr double first = 0.7, second = 1.9, end = 3.1;
   static double force(double t) { return t < first ? 1 : (t < second ? -1 : 1); }
-  static FunctionEquations equations() {
-    FunctionEquations e(1, 1, [](double t, std::span<const double> y, std::span<double> f) {
-      f[0] = y[1];
-      f[1] = -y[0] + force(t);
-      f[2] = 0;
-      return Evaluation{};
-    });
-    e.stiffness_ = {1};
-    return e;
-  }
+  static FunctionEquations equations() { return pushed_oscillator(force); }
   static State start() { return {0, {0, 0, 0}}; }
   /// Greatest error of x and ẋ at the end: rotation by the time passed about the force's equilibrium, three times.
   static double error(std::span<const double> y) {

@@ -15,22 +15,10 @@ namespace {
 
 const std::array<const char*, 5> adaptive_methods = {"rk4-adaptive", "dopri5", "dop853", "imex", "radau"};
 
-/// ẍ = −x + s(t).
-FunctionEquations pushed(double (*force)(double)) {
-  FunctionEquations e(1, 1, [force](double t, std::span<const double> y, std::span<double> f) {
-    f[0] = y[1];
-    f[1] = -y[0] + force(t);
-    f[2] = 0;
-    return Evaluation{};
-  });
-  e.stiffness_ = {1};
-  return e;
-}
-
 // With s = 24 sin 5t the motion from rest at 0 is 5 sin t − sin 5t: an interpolant that makes
 // stages of its own makes them at their times.
 TEST(BetweenSteps, interpolants_see_forces_of_time_at_the_times_of_their_stages) {
-  const FunctionEquations equations = pushed([](double t) { return 24 * std::sin(5 * t); });
+  const FunctionEquations equations = pushed_oscillator([](double t) { return 24 * std::sin(5 * t); });
   for (const char* method : adaptive_methods) {
     const auto greatest = [&](double h) {
       const auto stepper = make_uncontrolled(method, h)->start(equations, {0, {0, 0, 0}});
@@ -53,7 +41,7 @@ TEST(BetweenSteps, interpolants_see_forces_of_time_at_the_times_of_their_stages)
 
 // A force that jumps where a step ends is no part of an interpolant behind it: from (1, 0) to s = 1 at t = 1.
 TEST(BetweenSteps, interpolants_do_not_reach_back_over_a_restart) {
-  const FunctionEquations equations = pushed([](double t) { return t < 1 ? 0.0 : 1.0; });
+  const FunctionEquations equations = pushed_oscillator([](double t) { return t < 1 ? 0.0 : 1.0; });
   for (const char* method : adaptive_methods) {
     const auto stepper = make_uncontrolled(method, 0.1)->start(equations, {0, {1, 0, 0}});
     ASSERT_EQ(drive(*stepper, 1).outcome, StepResult::Outcome::ok);

@@ -17,6 +17,7 @@
 #include "withy/scene/scene_values.hpp"
 #include "withy/study/configuration.hpp"
 #include "withy/study/prepared.hpp"
+#include "withy/tests/results/cells.hpp"
 #include "withy/tests/results/scratch.hpp"
 
 namespace withy {
@@ -25,16 +26,7 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double pi = std::numbers::pi;
 
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> all(1);
-  for (const char c : line) {
-    if (c == ',')
-      all.emplace_back();
-    else
-      all.back() += c;
-  }
-  return all;
-}
+using test::cells;
 
 /// The cells of the first row of a table, by the heads of their columns.
 std::map<std::string, std::string> first_row(const std::string& table) {
