@@ -79,6 +79,7 @@ class SceneBuilder {
     known(0, tree.names);
     add_constraints_to(tree);
     add_motions(tree.model.get());
+    if (tree.model != nullptr) events.expect_locks(*tree.model);
     name_signals(document_, tree.model.get(), tree.names, checker_.registry());
     known(1, tree.names);
     add_loads(tree.model.get(), events);
