@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "withy/core/model/switched_load.hpp"
+#include "withy/study/equilibrium.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/open_loop.hpp"
 #include "withy/study/response.hpp"
@@ -315,6 +316,30 @@ loads: {servo: {type: pid, of: )" +
   EXPECT_THROW(static_cast<void>(linear_model(held(acceleration), {{"ice.2"}, {"ice.2"}})), InputError);
   EXPECT_THROW(static_cast<void>(open_loop(held(acceleration), "servo")), InputError);
   EXPECT_NO_THROW(static_cast<void>(linear_model(held(rate), {{"ice.2"}, {"ice.2"}})));
+}
+
+/// A spring of -20 N m/rad by the error of another sample pushes for a whole period where it should not: such a loop
+/// grows, and "stable" would be said of it, for the error is told and nothing follows it.
+TEST(LinearModel, OfALoadThatSamplesWhatASampledControllerTellsIsRefused) {
+  const auto scene = [](const std::string& measured) {
+    return scene_of(R"(
+bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+outputs: {q: {type: hinge, hinge: h}, cc: {type: control, of: c}, twice: {type: expression, value: 2 * cc.error}}
+loads:
+  s: {type: hinge-spring, hinge: h, stiffness: 1, damping: 0.1}
+  c: {type: pid, of: h, hinge: h, proportional: 0.0001, sample: 0.5}
+  k: {type: expression, hinge: h, value: ")" +
+                    measured + "\", sample: 0.5}\n");
+  };
+  for (const std::string measured : {"20*cc.error", "20*cc.error^2", "10*twice"}) {
+    const Prepared told = scene(measured);
+    EXPECT_THROW(static_cast<void>(linear_model(at_start(told), {{"h"}, {"h.0"}})), InputError) << measured;
+    EXPECT_THROW(static_cast<void>(find_equilibrium(at_start(told), {}, plugins())), InputError) << measured;
+  }
+  for (const std::string measured : {"-20*q.position", "20*cc.command"})
+    EXPECT_NO_THROW(static_cast<void>(linear_model(at_start(scene(measured)), {{"h"}, {"h.0", "cc.error"}})))
+        << measured;
 }
 
 }  // namespace
