@@ -90,6 +90,8 @@ class SceneBuilder {
     known(2, tree.names);
     add_outputs(tree);
     unbound_.report(checker_, refused_);
+    if (const Value* loads = scene_.source.find("loads"); loads != nullptr && tree.model != nullptr)
+      refuse_names_of_load_and_output(*loads, *tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok()) give_outputs(*tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok())
       events.add_to(*tree.model, scene_.outputs, scene_.events);
