@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "withy/campaign/case_lanes.hpp"
 #include "withy/campaign/store.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/study/prepared.hpp"
