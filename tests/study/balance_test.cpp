@@ -301,7 +301,7 @@ initial: {hinges: {joint: {rate: )" +
   EXPECT_EQ(rate(1), 1.3e-11);
   const Equilibrium passing = find_equilibrium(at_start(at_rate("-1e-4")), {}, plugins());
   EXPECT_FALSE(passing.stays);
-  EXPECT_THAT(passing.passing, testing::ElementsAre("joint"));
+  EXPECT_THAT(passing.passing, testing::Contains("joint"));
 }
 
 }  // namespace
