@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "withy/core/equations/lane_equations.hpp"
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/step_watch.hpp"
 #include "withy/study/input_error.hpp"
@@ -31,6 +32,8 @@ void CaseRun::refusing(Action&& action) {
     refuse(e.what());
   } catch (const std::invalid_argument& e) {
     refuse(e.what());
+  } catch (const IntegratorError& e) {  // no case can be trusted
+    throw e.named(prepared_->scene.integrator_name);
   }
 }
 

@@ -87,7 +87,7 @@ class MatchingObserver final : public SteppingObserver {
   int sign_ = 1;
 };
 
-MatchedRun run_prepared(const study::Prepared& prepared, const Measured& data, const study::Control& control) {
+MatchedRun run_steps(const study::Prepared& prepared, const Measured& data, const study::Control& control) {
   const Scene& scene = prepared.scene;
   const EquationsOfMotion& equations = *prepared.equations;
   const State start = begun(*scene.model, equations, scene.initial);
@@ -106,6 +106,14 @@ MatchedRun run_prepared(const study::Prepared& prepared, const Measured& data, c
     why = stop_of(ended, *scene.model, equations, loop.state(), loop.stepper()).reason;
   observer.finish(loop.state(), why);
   return std::move(observer.run);
+}
+
+MatchedRun run_prepared(const study::Prepared& prepared, const Measured& data, const study::Control& control) {
+  try {
+    return run_steps(prepared, data, control);
+  } catch (const IntegratorError& e) {
+    throw e.named(prepared.scene.integrator_name);
+  }
 }
 
 }  // namespace

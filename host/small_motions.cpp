@@ -26,8 +26,7 @@ namespace {
 
 State state_at(const study::Prepared& prepared, const Given& at) {
   if (!at.any()) return prepared.scene.initial;
-  return at.text ? parse_state(*at.text, at.file, prepared.model(), prepared.scene.initial)
-                 : read_state(at.file, prepared.model(), prepared.scene.initial);
+  return at.text ? parse_state(*at.text, at.file, prepared.scene) : read_state(at.file, prepared.scene);
 }
 
 /// What `act` makes of the place; where it has no value there, what stops it.

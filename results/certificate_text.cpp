@@ -245,11 +245,13 @@ std::string cause_text(const study::StepLimit& s) {
 constexpr double worth_telling = 1.2;
 
 std::string step_limit_text(const study::StepLimit& s) {
-  if (!s.limit) return fmt::format("mean step times fastest mode {:.2g}", s.product);
+  if (!s.limit)
+    return fmt::format("{}mean step times fastest mode {:.2g}", s.controlled ? "" : cause_text(s) + ": ", s.product);
   if (std::isinf(*s.limit))
     return fmt::format("{}: mean step times fastest mode {:.2g}, stable at any step", cause_text(s), s.product);
   std::string text =
       fmt::format("{}: mean step times fastest mode {:.2g}, stable to {:.3g}", cause_text(s), s.product, *s.limit);
+  if (!s.controlled && s.product > *s.limit) text += fmt::format(", {:.2g} times that", s.product / *s.limit);
   if (s.fastest_rests()) text += ", for what is so fast rests or has just begun";
   if (!s.resting.empty()) text += fmt::format("; {}, faster at {:.3g}/s, rests and limits none", s.resting, s.fastest);
   if (!s.maker.empty() && s.cause() == "stability") text += "; the fastest pole is " + s.maker;

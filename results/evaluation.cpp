@@ -1,5 +1,6 @@
 #include "withy/results/evaluation.hpp"
 
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/instants.hpp"
@@ -61,7 +62,7 @@ Evaluated evaluate(const study::Prepared& prepared, const State& given) {
   j["accelerations"] = nullptr;
   const auto first = rates.begin() + static_cast<std::ptrdiff_t>(layout.positions);
   if (found) j["accelerations"] = std::vector<double>(first, first + static_cast<std::ptrdiff_t>(layout.speeds));
-  if (found && !model.motions().empty()) {
+  if (found && (!model.motions().empty() || !locked_hinges(model, state).empty())) {
     std::vector<double> efforts(layout.speeds);
     equations.motion_efforts(state.time, state.y, efforts, work);
     j["motion_efforts"] = efforts;

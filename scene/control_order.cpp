@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <utility>
 
 #include "withy/core/model/bound_sensor.hpp"
@@ -223,17 +224,37 @@ std::set<std::string> needed_loads(const Value& load, const std::set<std::string
   return found;
 }
 
-void refuse_names_of_two(const Value& loads, const Model& model, const Checker& checker) {
+namespace {
+
+/// \param two which signals have two meanings \param what they are, and what to do
+void refuse_signals(const Value& loads, const Checker& checker, const std::function<bool(const std::string&)>& two,
+                    const std::string& what) {
   for (const auto& [load, given] : loads.members()) {
     std::set<std::string> told;
     for (const auto& [signal, value] : signals_of(given)) {
       const bool own = signal.substr(0, signal.find('.')) == load;  // no load measures itself
-      if (own || !is_of_hinge_and_load(model, signal) || !told.insert(signal).second) continue;
-      checker.diagnostics().error(value->place(), fmt::format("'{}' is a hinge and a load, and either can be measured: "
-                                                              "give the load another name",
-                                                              signal));
+      if (own || !two(signal) || !told.insert(signal).second) continue;
+      checker.diagnostics().error(value->place(), fmt::format("'{}' is {}", signal, what));
     }
   }
+}
+
+}  // namespace
+
+void refuse_names_of_two(const Value& loads, const Model& model, const Checker& checker) {
+  refuse_signals(
+      loads, checker, [&](const std::string& signal) { return is_of_hinge_and_load(model, signal); },
+      "a hinge and a load, and either can be measured: give the load another name");
+}
+
+void refuse_names_of_load_and_output(const Value& loads, const Model& model, const std::vector<SensorNode>& outputs,
+                                     const Checker& checker) {
+  std::set<std::string> numbers;
+  for (const SensorNode& node : outputs)
+    for (const Column& column : columns_of(node)) numbers.insert(column.name);
+  refuse_signals(
+      loads, checker, [&](const std::string& signal) { return numbers.contains(signal) && is_of_load(model, signal); },
+      "a load and an output, and either can be measured: give the output another name");
 }
 
 std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Checker& checker) {

@@ -29,6 +29,9 @@ std::set<std::string> needed_loads(const Value& load, const std::set<std::string
 /// Reports signals that loads measure by a name that a hinge and a load have both. \param loads of the scene, as
 /// checked \param model with all loads that can be bound
 void refuse_names_of_two(const Value& loads, const Model& model, const Checker& checker);
+/// The same of names that a load and a number of an output have both.
+void refuse_names_of_load_and_output(const Value& loads, const Model& model, const std::vector<SensorNode>& outputs,
+                                     const Checker& checker);
 
 /// In an order in which every load stands behind those that it needs. Loads that go round in a circle are reported and
 /// left out, and so are those that need a load which is not among them.

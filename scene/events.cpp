@@ -86,6 +86,15 @@ void SceneEvents::fasten(Value& hinges) const {
     if (std::find(held_.begin(), held_.end(), name) != held_.end()) hinge.set("type", Value(std::string("weld")));
 }
 
+void SceneEvents::expect_locks(Model& model) const {
+  std::vector<std::string> names = held_;
+  for (const auto& [name, event] : events_.members())
+    for (const char* key : {"lock", "unlock"})
+      for (const Value& item : items_of(event.at("do"), key)) names.push_back(item.text());
+  for (const std::string& name : names)
+    if (const int hinge = model.hinge(name); hinge >= 0) model.expect_lock(static_cast<std::size_t>(hinge));
+}
+
 /// Whether the value that an event's number passes has its unit.
 bool SceneEvents::measures(const std::string& event, const Watched& number) const {
   const Value* value = document_.root.at("events").at(event).find("value");

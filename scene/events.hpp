@@ -25,6 +25,9 @@ class SceneEvents {
   void loosen(Value& hinges);
   /// Takes that back, in the values that the scene is kept as: they are to make the same scene again.
   void fasten(Value& hinges) const;
+  /// Tells the model which hinges events lock or unlock, for sensors that are bound to it. Names that are wrong are
+  /// reported by add_to.
+  void expect_locks(Model& model) const;
   /// The load in all forms that events give it; as it is where they give it none.
   std::shared_ptr<const Load> with_forms(const std::string& name, std::shared_ptr<const Load> load);
   /// Adds the events that act to the model, which has its loads; the others to `plain`.

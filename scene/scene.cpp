@@ -79,6 +79,7 @@ class SceneBuilder {
     known(0, tree.names);
     add_constraints_to(tree);
     add_motions(tree.model.get());
+    if (tree.model != nullptr) events.expect_locks(*tree.model);
     name_signals(document_, tree.model.get(), tree.names, checker_.registry());
     known(1, tree.names);
     add_loads(tree.model.get(), events);
@@ -89,6 +90,8 @@ class SceneBuilder {
     known(2, tree.names);
     add_outputs(tree);
     unbound_.report(checker_, refused_);
+    if (const Value* loads = scene_.source.find("loads"); loads != nullptr && tree.model != nullptr)
+      refuse_names_of_load_and_output(*loads, *tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok()) give_outputs(*tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok())
       events.add_to(*tree.model, scene_.outputs, scene_.events);

@@ -76,9 +76,13 @@ double end_of_run(const Scene& scene);
 /// From its initial time to that [s]; 0 where there is no end.
 double span_of(const Scene& scene);
 
-/// Reads a state (JSON or YAML, form as under `initial` of a scene) for a model: what is not named is as in `start`,
-/// the scene's own, but loads' continuous states that neither names begin where the state read has them begin. \throws
+/// Reads a state (JSON or YAML, form as under `initial` of a scene) for a scene: what is not named is as in its
+/// `initial`, but loads' continuous states that neither names begin where the state read has them begin. \throws
 /// SceneError
+State read_state(const std::string& file, const Scene& scene);
+State parse_state(std::string_view text, const std::string& file, const Scene& scene);
+/// The same for a model, where no scene says what is named: what is not is as in `start`, but loads' continuous states
+/// of `start` that are as they would begin there begin anew.
 State read_state(const std::string& file, const Model& model, const State& start);
 State parse_state(std::string_view text, const std::string& file, const Model& model, const State& start);
 /// The state as JSON text, complete with time and work: reading it back gives the same bits.

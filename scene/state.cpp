@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <unordered_map>
+#include <vector>
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/hosted_motion.hpp"
@@ -252,20 +253,41 @@ class StateReader {
   bool good_ = true;
 };
 
-/// Loads' own states that neither `given` nor the scene names begin where the state read has them begin.
-/// \param start the scene's state, before `given` was read
-void begin_loads_anew(const Value& given, const Model& model, const Checker& checker, const State& start,
+/// Which numbers of y are continuous states of loads that the `initial` of the scene names.
+std::vector<bool> named_by(const Scene& scene) {
+  const Model& model = *scene.model;
+  std::vector<bool> named(scene.initial.y.size());
+  const Value* initial = scene.source.find("initial");
+  const Value* loads = initial == nullptr ? nullptr : initial->find("loads");
+  if (loads == nullptr) return named;
+  for (const LoadSlot& slot : model.layout().continuous_slots) {
+    const LoadNode& load = model.loads()[slot.load];
+    const Value* states = loads->find(load.name);
+    for (std::size_t i = 0; states != nullptr && i < slot.count; ++i)
+      named[slot.first + i] = states->has(load.continuous->name(i));
+  }
+  return named;
+}
+
+/// The same of a state without its scene: those that are not as they would begin there.
+std::vector<bool> set_in(const State& start, const Model& model) {
+  State begun = start;
+  model.begin_continuous(begun);
+  std::vector<bool> set(start.y.size());
+  for (std::size_t i = 0; i < set.size(); ++i) set[i] = start.y[i] != begun.y[i];
+  return set;
+}
+
+/// Loads' own states that `given` does not name begin where the state read has them begin, but for those of `stay`.
+/// \param stay one a number of y
+void begin_loads_anew(const Value& given, const Model& model, const Checker& checker, const std::vector<bool>& stay,
                       State& state) {
   if (model.layout().continuous == 0) return;
-  State by_scene = start, anew = state;
-  model.begin_continuous(by_scene);
+  State anew = state;
   model.begin_continuous(anew);
-  for (const LoadSlot& slot : model.layout().continuous_slots) {
-    for (std::size_t i = 0; i < slot.count; ++i) {
-      const std::size_t at = slot.first + i;
-      if (start.y[at] == by_scene.y[at]) state.y[at] = anew.y[at];
-    }
-  }
+  for (const LoadSlot& slot : model.layout().continuous_slots)
+    for (std::size_t at = slot.first; at < slot.first + slot.count; ++at)
+      if (!stay[at]) state.y[at] = anew.y[at];
   if (const Value* loads = given.find("loads"))
     set_state(Value::map({{"loads", *loads}}, given.place()), model, checker, state);
   for (const LoadSlot& slot : model.layout().continuous_slots)
@@ -275,6 +297,25 @@ void begin_loads_anew(const Value& given, const Model& model, const Checker& che
             given.place(), fmt::format("load '{}': its state '{}' begins with no finite number here; say it "
                                        "under 'loads'",
                                        model.loads()[slot.load].name, model.loads()[slot.load].continuous->name(i)));
+}
+
+/// \param stay as begin_loads_anew
+State state_of(std::string_view text, const std::string& file, const Model& model, const State& start,
+               const std::vector<bool>& stay) {
+  Diagnostics diagnostics;
+  Document document;
+  State state = start;
+  if (read_document(text, {}, document, diagnostics)) {
+    Registry none;
+    // A run.json says with which state its run ended.
+    const Value& root = document.root;
+    const Value* final = root.kind() == Value::Kind::map && root.has("status") ? root.find("final") : nullptr;
+    const Value& given = final != nullptr ? *final : root;
+    const Checker checker(document, none, diagnostics);
+    if (set_state(given, model, checker, state)) begin_loads_anew(given, model, checker, stay, state);
+  }
+  if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
+  return state;
 }
 
 }  // namespace
@@ -296,24 +337,17 @@ bool set_state(const Value& value, const Model& model, const Checker& checker, S
 }
 
 State parse_state(std::string_view text, const std::string& file, const Model& model, const State& start) {
-  Diagnostics diagnostics;
-  Document document;
-  State state = start;
-  if (read_document(text, {}, document, diagnostics)) {
-    Registry none;
-    // A run.json says with which state its run ended.
-    const Value& root = document.root;
-    const Value* final = root.kind() == Value::Kind::map && root.has("status") ? root.find("final") : nullptr;
-    const Value& given = final != nullptr ? *final : root;
-    const Checker checker(document, none, diagnostics);
-    if (set_state(given, model, checker, state)) begin_loads_anew(given, model, checker, start, state);
-  }
-  if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
-  return state;
+  return state_of(text, file, model, start, set_in(start, model));
+}
+
+State parse_state(std::string_view text, const std::string& file, const Scene& scene) {
+  return state_of(text, file, *scene.model, scene.initial, named_by(scene));
 }
 
 State read_state(const std::string& file, const Model& model, const State& start) {
   return parse_state(read_bytes(file), file, model, start);
 }
+
+State read_state(const std::string& file, const Scene& scene) { return parse_state(read_bytes(file), file, scene); }
 
 }  // namespace withy

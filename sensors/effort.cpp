@@ -46,7 +46,8 @@ class EffortSensor final : public Sensor {
       throw std::invalid_argument("hinge '" + hinge_ +
                                   "' has no rate that an effort could act on; what it carries is its reaction");
     const EffortShare share = effort_share(model, of_);
-    if (of_ == "motion" && !model.driven(h)) throw std::invalid_argument("no motion moves hinge '" + hinge_ + "'");
+    if (of_ == "motion" && !model.driven(h) && !model.may_be_locked(h))
+      throw std::invalid_argument("no motion moves hinge '" + hinge_ + "'");
     return std::make_unique<BoundEffort>(model.hinges()[h], slot, share);
   }
 

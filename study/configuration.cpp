@@ -14,6 +14,7 @@
 #include "withy/core/simulation/instants.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/check_loads.hpp"
+#include "withy/study/creep.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/refusals.hpp"
 
@@ -77,6 +78,12 @@ State all_begun(const Model& model, const EquationsOfMotion& equations, State st
   return state;
 }
 
+/// What the scene's integrator lets coordinates be off by [rad, m]; 0 where it has no tolerance.
+double tolerance_of(const Scene& scene) {
+  const Value* given = scene.source.at("integrator").find("atol");
+  return given != nullptr && given->kind() == Value::Kind::number ? given->number() : 0;
+}
+
 }  // namespace
 
 Configuration::Configuration(const Prepared& prepared, State state, const Holding& holding)
@@ -108,6 +115,7 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
     }
   }
   for (const Spin& spun : holding.spun) spin(spun);
+  state_ = without_creep(dynamics_, std::move(state_), held_, tolerance_of(prepared_.scene));
 }
 
 std::vector<std::string> Configuration::held_names() const {

@@ -25,7 +25,8 @@ struct Holding {
 
 class Configuration {
  public:
-  /// Sampled loads that have not begun hold what they give at the state.
+  /// Sampled loads that have not begun hold what they give at the state. Hinges that an integrator has left creeping
+  /// about rest are at rest (without_creep).
   /// \throws InputError where a load switches, or there is no such hinge; SceneError where a load is wrong about its
   /// derivatives.
   Configuration(const Prepared& prepared, State state, const Holding& holding);

@@ -380,7 +380,7 @@ std::string outcome_text(const RunSummary& summary) {
 }
 
 RunSummary simulate(const Prepared& prepared, Registry& registry, const std::function<void(const State&)>& output,
-                    const Control& control) {
+                    const Control& control) try {
   RunSettings settings;
   settings.control = control;
   settings.output = [&](const State& state, std::size_t) {
@@ -391,6 +391,8 @@ RunSummary simulate(const Prepared& prepared, Registry& registry, const std::fun
     return settings.control.stop() ? not_begun(prepared) : run_planned(prepared, settings, plan);
   }
   return run_plainly(prepared, settings, nullptr);
+} catch (const IntegratorError& e) {
+  refuse_integrator(prepared, e.deed());
 }
 
 }  // namespace withy::study

@@ -49,6 +49,7 @@ SampledLoads::SampledLoads(const SmallMotions& motions)
   if (none()) return;
   find_period();
   refuse_held_alone();
+  refuse_told_measured();
   differentiate();
 }
 
@@ -65,6 +66,25 @@ void SampledLoads::refuse_held_alone() {
                        "forces, which do not know of that: hold all of the hinge");
     }
   }
+}
+
+void SampledLoads::refuse_told_measured() {
+  const State& now = motions_.state();
+  const Eigen::VectorXd renewed_now = renewed(now, now, due(0));
+  if (!renewed_now.allFinite()) return;
+  Eigen::Index i = 0;
+  for (const Part& part : loads_)
+    for (const Eigen::Index end = i + static_cast<Eigen::Index>(part.told.count); i < end; ++i)
+      // What nothing measures leaves all bits; a law may have a dead zone, and a limit.
+      for (const double by : {-1e3, -1.0, -1e-3, 1e-3, 1.0, 1e3}) {
+        const State told = told_displaced(i, by);
+        if (renewed(told, told, due(0)) == renewed_now) continue;
+        const std::string& name = motions_.model().loads()[part.told.load].name;
+        throw InputError(fmt::format(
+            "a sampled load measures what an output shows of load '{0}' beside its commands, as its error, and small "
+            "motions take that for something that nothing follows: let it measure what '{0}' measures",
+            name));
+      }
 }
 
 void SampledLoads::find_period() {

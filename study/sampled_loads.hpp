@@ -19,7 +19,7 @@ namespace withy::study {
 class SampledLoads {
  public:
   /// \throws InputError where the periods have no common one within a thousand instants, or a load measures what the
-  /// acceleration of a speed has a part in that is held while others of its hinge are not.
+  /// acceleration of a speed has a part in that is held while others of its hinge are not, or what is told of another.
   explicit SampledLoads(const SmallMotions& motions);
 
   [[nodiscard]] bool none() const { return loads_.empty(); }
@@ -108,6 +108,7 @@ class SampledLoads {
   }
   void differentiate();
   void refuse_held_alone();
+  void refuse_told_measured();
 
   const SmallMotions& motions_;
   std::vector<Part> loads_;

@@ -155,9 +155,11 @@ std::string StepLimit::cause() const {
   constexpr double near_limit = 0.6;
   // Steps land on what they may not pass, and are shorter here and there.
   constexpr double all_of_it = 0.9;
-  if (!limit || mean == 0 || fastest == 0) return "unknown";
+  if (mean == 0) return "unknown";
+  if (!controlled) return "given";
+  if (!limit || fastest == 0) return "unknown";
   if (!fastest_rests() && product > near_limit * *limit) return "stability";
-  return !controlled || mean >= all_of_it * longest ? "given" : "accuracy";
+  return mean >= all_of_it * longest ? "given" : "accuracy";
 }
 
 bool StepLimit::fastest_rests() const {

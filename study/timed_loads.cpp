@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "withy/study/load_efforts.hpp"
@@ -26,12 +28,13 @@ std::vector<Instant> instants_after(const Configuration& c, const State& state, 
   return instants;
 }
 
-/// Efforts of a load [N m, N] at a state and with everything displaced.
+/// Efforts of a load [N m, N], one a speed, then rates of its own states, at a state and with everything displaced.
 struct PushOfLoad {
   Eigen::VectorXd here, displaced;
 };
 
-/// What time itself changes of a load's efforts on what is free.
+/// What time itself changes of a load's efforts on what is free, and of the rates of its own states, of which its
+/// efforts are to come.
 struct ChangeOfLoad {
   bool pushes = false;  ///< at the state
   std::vector<std::size_t>
@@ -42,31 +45,42 @@ struct ChangeOfLoad {
 class Pushes {
  public:
   Pushes(const Configuration& c, const std::vector<Instant>& instants)
-      : c_(c), instants_(instants), free_(free_speeds(c.held())), work_(c.prepared().equations->make_work()) {}
+      : c_(c),
+        instants_(instants),
+        free_(free_speeds(c.held())),
+        rows_(free_),
+        work_(c.prepared().equations->make_work()),
+        scratch_(c.prepared().model().load_scratch()),
+        at_rest_(c.layout().speeds) {
+    for (std::size_t i = 0; i < c.layout().continuous; ++i)
+      rows_.push_back(static_cast<Eigen::Index>(c.layout().speeds + i));
+    every_.resize(c.layout().speeds + c.layout().continuous);
+    std::iota(every_.begin(), every_.end(), Eigen::Index{0});
+  }
 
   /// \param soon, up_to instants at which shaking is looked at where the load pushes
   ChangeOfLoad change(std::size_t load, std::size_t soon, std::size_t up_to) {
     // Of the greatest effort, displaced too: what the state is off by, and a turn carried on, is known to so much.
     constexpr double rounding = 1e-9;
     const double start_time = instants_.front().time;
-    greatest_ = 0;
+    greatest_.setZero();
     const PushOfLoad start = at(start_time, instants_.front(), load);
-    double pushed = 0;
-    std::vector<double> shaken(instants_.size(), 0.0);
+    Sizes pushed = Sizes::Zero();
+    std::vector<Sizes> shaken(instants_.size(), Sizes::Zero());
     for (std::size_t k = 1; k < instants_.size(); ++k) {
       const PushOfLoad then = at(instants_[k].time, instants_[k], load);
       if (then.here == start.here && then.displaced == start.displaced) continue;
       // What the place alone makes of it is not of the time.
       const PushOfLoad of_place = at(start_time, instants_[k], load);
-      pushed = std::max(pushed, std::min(apart(then.here, start.here), apart(then.here, of_place.here)));
+      pushed = pushed.max(apart(then.here, start.here).min(apart(then.here, of_place.here)));
       const Eigen::VectorXd by = then.displaced - then.here;
-      shaken[k] = std::min(apart(by, start.displaced - start.here), apart(by, of_place.displaced - of_place.here));
+      shaken[k] = apart(by, start.displaced - start.here).min(apart(by, of_place.displaced - of_place.here));
     }
-    ChangeOfLoad found{pushed > rounding * greatest_, {}};
+    ChangeOfLoad found{share(pushed) > rounding, {}};
     for (std::size_t k = found.pushes ? soon : 1; k < (found.pushes ? up_to : instants_.size()); ++k)
-      if (shaken[k] > rounding * greatest_) found.shaken.push_back(k);
+      if (share(shaken[k]) > rounding) found.shaken.push_back(k);
     std::sort(found.shaken.begin(), found.shaken.end(),
-              [&](std::size_t a, std::size_t b) { return shaken[a] > shaken[b]; });
+              [&](std::size_t a, std::size_t b) { return share(shaken[a]) > share(shaken[b]); });
     return found;
   }
 
@@ -74,9 +88,9 @@ class Pushes {
   /// is finite, and what it makes of a load's square is nothing to these. \param pushed held against all that acts, for
   /// a law near its limit has nearly no derivative of its own
   bool small_motions_change(const std::vector<std::size_t>& loads, const std::vector<std::size_t>& at, bool pushed) {
-    if (at.empty() || free_.empty()) return false;
+    if (at.empty() || rows_.empty()) return false;
     const double start_time = instants_.front().time;
-    const Eigen::VectorXd against = pushed ? all_that_acts() : Eigen::VectorXd::Zero(free_count());
+    const Eigen::VectorXd against = pushed ? all_that_acts() : Eigen::VectorXd::Zero(count());
     const double share = pushed ? pushed_equations : differenced_equations;
     const auto others = [&](const Differenced& a, const Differenced& b) {
       return other_equations(a, b, share, against).any();
@@ -89,48 +103,79 @@ class Pushes {
   }
 
  private:
+  using Sizes = Eigen::Array2d;  ///< of an effort, of a rate of a state
+
   PushOfLoad at(double t, const Instant& place, std::size_t load) {
     return {of(t, place.here, load), of(t, place.displaced, load)};
   }
   Eigen::VectorXd of(double t, const State& state, std::size_t load) {
-    Eigen::VectorXd efforts = load_efforts(*c_.prepared().equations, t, state, static_cast<int>(load), work_);
-    for (const double effort : efforts) greatest_ = std::max(greatest_, std::abs(effort));
-    return efforts;
+    const std::size_t speeds = c_.layout().speeds;
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(speeds + c_.layout().continuous));
+    all.head(static_cast<Eigen::Index>(speeds)) =
+        load_efforts(*c_.prepared().equations, t, state, static_cast<int>(load), work_);
+    if (const LoadNode& node = c_.prepared().model().loads()[load]; node.continuous != nullptr) {
+      LoadView view = node.view(t, state.y, c_.layout(), scratch_);
+      // Whose change with time makes others is told itself.
+      view.accelerations = at_rest_;
+      const LoadSlot& own = node.continuous_slot;
+      node.continuous->rates(view, std::span<double>(all.data(), static_cast<std::size_t>(all.size()))
+                                       .subspan(own.first - c_.layout().positions, own.count));
+    }
+    greatest_ = greatest_.max(greatest(all, every_));
+    return all;
+  }
+  /// The greatest of the numbers in `rows` that are efforts, and of those that are rates of states.
+  [[nodiscard]] Sizes greatest(const Eigen::VectorXd& all, const std::vector<Eigen::Index>& rows) const {
+    const auto speeds = static_cast<Eigen::Index>(c_.layout().speeds);
+    Sizes of = Sizes::Zero();
+    for (const Eigen::Index r : rows) of[r < speeds ? 0 : 1] = std::max(of[r < speeds ? 0 : 1], std::abs(all[r]));
+    return of;
   }
   /// What holds a hinge bears what acts on it.
-  [[nodiscard]] double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
-    double change = 0;
-    for (const Eigen::Index s : free_) change = std::max(change, std::abs(a[s] - b[s]));
-    return change;
+  [[nodiscard]] Sizes apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const { return greatest(a - b, rows_); }
+  /// Of the greatest that has been met.
+  [[nodiscard]] double share(const Sizes& change) const {
+    double most = 0;
+    for (Eigen::Index i = 0; i < change.size(); ++i)
+      if (change[i] > 0) most = std::max(most, change[i] / greatest_[i]);
+    return most;
   }
-  [[nodiscard]] Eigen::Index free_count() const { return static_cast<Eigen::Index>(free_.size()); }
-  /// Of efforts on what is free, of loads together.
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(rows_.size()); }
+  /// Of efforts on what is free and of rates of own states, of loads together.
   Differenced slopes(double t, const State& place, const std::vector<std::size_t>& loads) {
     return slopes_anyhow(c_, place, [&](const State& state) {
-      Eigen::VectorXd all = Eigen::VectorXd::Zero(free_count());
-      for (const std::size_t load : loads) all += of(t, state, load)(free_);
+      Eigen::VectorXd all = Eigen::VectorXd::Zero(count());
+      for (const std::size_t load : loads) all += of(t, state, load)(rows_);
       return all;
     });
   }
-  /// What a displacement or its rate makes of all forces on what is free, were none to make up for another.
+  /// What a displacement or its rate makes of all forces on what is free, were none to make up for another, and of the
+  /// rates of loads' states.
   Eigen::VectorXd all_that_acts() {
     const Instant& start = instants_.front();
     const Tangents now =
         c_.dynamics().tangents(start.time, start.here.y, c_.dynamics().steady_accelerations(start.time));
-    Eigen::VectorXd by(free_count());
+    Eigen::VectorXd by(static_cast<Eigen::Index>(free_.size()));
     for (Eigen::Index i = 0; i < by.size(); ++i) {
       const std::size_t rate = c_.layout().positions + static_cast<std::size_t>(free_[static_cast<std::size_t>(i)]);
       by[i] = std::abs(start.displaced.y[rate] - start.here.y[rate]);
     }
-    const auto made_by = [&](const Eigen::MatrixXd& m) -> Eigen::VectorXd { return m(free_, free_).cwiseAbs() * by; };
-    return made_by(now.by_position).cwiseMax(made_by(now.by_speed));
+    const auto made_by = [&](const Eigen::MatrixXd& m) -> Eigen::VectorXd { return m.cwiseAbs() * by; };
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(count());
+    all.head(by.size()) = made_by(now.by_position(free_, free_)).cwiseMax(made_by(now.by_speed(free_, free_)));
+    if (now.rate_by_position.size() > 0)
+      all.tail(count() - by.size()) =
+          made_by(now.rate_by_position(Eigen::all, free_)).cwiseMax(made_by(now.rate_by_speed(Eigen::all, free_)));
+    return all;
   }
 
   const Configuration& c_;
   const std::vector<Instant>& instants_;
-  std::vector<Eigen::Index> free_;
+  std::vector<Eigen::Index> free_, rows_;  ///< speeds; beside these states of loads, behind all speeds
+  std::vector<Eigen::Index> every_;        ///< held speeds too
   Work work_;
-  double greatest_ = 0;  ///< effort of the load that has been met
+  std::vector<double> scratch_, at_rest_;
+  Sizes greatest_ = Sizes::Zero();  ///< of the load that has been met
 };
 
 }  // namespace
@@ -174,6 +219,8 @@ State displaced_anyhow(const Configuration& c, State state, double times) {
     by[s] = c.held()[static_cast<std::size_t>(s)] ? 0.0 : times * far * (1 + std::cos(static_cast<double>(s)) / 2);
     state.y[layout.positions + static_cast<std::size_t>(s)] += by[s];
   }
+  for (std::size_t i = layout.positions + layout.speeds; i < layout.moving(); ++i)
+    state.y[i] += times * far * (1 + std::abs(state.y[i])) * (1 + std::cos(static_cast<double>(i)) / 2);
   c.dynamics().displace(state.y, by);
   return state;
 }

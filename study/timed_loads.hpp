@@ -14,7 +14,7 @@ namespace withy::study {
 
 /// Names of loads that are functions of time themselves: a sine, a table, axes that turn.
 struct TimedLoads {
-  /// Their efforts on what is free change: nothing that is balanced now stays so.
+  /// Their efforts on what is free change, or the rates of their own states: nothing that is balanced now stays so.
   std::vector<std::string> pushing;
   /// They change the equations of small motions, whether they push at the state or not: growth and decay are those of
   /// one instant. A controller's reference and a force that only time changes leave these equations as they are, and so
@@ -42,8 +42,8 @@ inline constexpr double differenced_equations = 1e-6;
 inline constexpr double pushed_equations = 1e-4;
 
 /// The state with everything that is free displaced and moving, no two alike: what a load makes of it shows in its
-/// effort, also where it makes nothing of the state itself. \param times one: by 5 to 15 mrad or mm, and as much a
-/// second
+/// effort, also where it makes nothing of the state itself. Loads' own states are displaced too. \param times one: by 5
+/// to 15 mrad or mm, and as much a second; states of loads by half a percent to 1.5 percent of themselves and of one
 State displaced_anyhow(const Configuration& configuration, State state, double times = 1);
 
 /// Derivatives of what is read off states, by `times` of displaced_anyhow at none.
@@ -52,8 +52,8 @@ Differenced slopes_anyhow(const Configuration& configuration, const State& state
 
 /// By how much derivatives are others, one a number, beyond what differences leave open: zero where that is all.
 Eigen::VectorXd other_slopes(const Differenced& here, const Differenced& there);
-/// Of derivatives of efforts, one each: whether it is by more than a share of itself, or of a size [N m, N] a
-/// displacement where that is greater, and by more than rounding of the greatest of them.
+/// Of derivatives of efforts, and of rates of states, one each: whether it is by more than a share of itself, or of a
+/// size [N m, N] a displacement where that is greater, and by more than rounding of the greatest of them.
 Eigen::Array<bool, Eigen::Dynamic, 1> other_equations(const Differenced& here, const Differenced& there, double share,
                                                       const Eigen::VectorXd& sizes);
 

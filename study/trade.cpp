@@ -9,6 +9,7 @@
 #include <mutex>
 #include <thread>
 
+#include "withy/core/simulation/integrator_call.hpp"
 #include "withy/study/accuracy.hpp"
 #include "withy/study/candidates.hpp"
 #include "withy/study/check_loads.hpp"
@@ -32,7 +33,7 @@ struct TimedRun {
 };
 
 /// Short runs are timed again and again: the least time is nearest to what the processor needs.
-TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control& control) {
+TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control& control) try {
   constexpr int most_runs = 30;
   constexpr double long_enough = 0.05;  // s
   RunOptions options = run_options(model.scene);
@@ -57,6 +58,8 @@ TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control&
     run.readings.values.push_back(reader.read(s));
   }
   return run;
+} catch (const IntegratorError& e) {
+  throw e.named(model.scene.integrator_name);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ State Engine::state(const std::string& file) const { return read_state(prepared_
 
 State read_state(const study::Prepared& prepared, const std::string& file) {
   if (file.empty()) return prepared.scene.initial;
-  return as_input([&] { return withy::read_state(file, prepared.model(), prepared.scene.initial); });
+  return as_input([&] { return withy::read_state(file, prepared.scene); });
 }
 
 study::Control run_control(const std::string& label) {

@@ -8,7 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "withy/bindings/python/made.hpp"
+#include "withy/host/library.hpp"
 #include "withy/host/scene.hpp"
+
+template <>
+class pybind11::detail::type_caster<withy::host::Library> : public withy::python::MadeCaster<withy::host::Library> {};
+template <>
+class pybind11::detail::type_caster<withy::host::Scene> : public withy::python::MadeCaster<withy::host::Scene> {};
 
 namespace withy::python {
 

@@ -12,6 +12,7 @@
 
 #include "withy/bindings/python/bindings.hpp"
 #include "withy/bindings/python/followed.hpp"
+#include "withy/bindings/python/made.hpp"
 #include "withy/bindings/python/one_at_a_time.hpp"
 #include "withy/bindings/python/python_failure.hpp"
 #include "withy/core/plugin/registry.hpp"
@@ -138,6 +139,17 @@ struct SharedSimulation {
   Simulation simulation;
   OneAtATime busy;
 };
+
+}  // namespace
+
+template <>
+class pybind11::detail::type_caster<SharedEquations> : public withy::python::MadeCaster<SharedEquations> {};
+template <>
+class pybind11::detail::type_caster<SharedSimulation> : public withy::python::MadeCaster<SharedSimulation> {};
+template <>
+class pybind11::detail::type_caster<Snapshot> : public withy::python::MadeCaster<Snapshot> {};
+
+namespace {
 
 /// Raises an exception of the package.
 template <class... Arguments>

@@ -4,6 +4,7 @@
 
 #include "withy/bindings/python/bindings.hpp"
 #include "withy/bindings/python/followed.hpp"
+#include "withy/bindings/python/made.hpp"
 #include "withy/campaign/cases.hpp"
 #include "withy/campaign/plan.hpp"
 #include "withy/campaign/sweep_page.hpp"
@@ -53,6 +54,13 @@ py::tuple collect(const std::string& store) {
 }
 
 }  // namespace
+}  // namespace withy::python
+
+template <>
+class pybind11::detail::type_caster<withy::python::OpenSweep>
+    : public withy::python::MadeCaster<withy::python::OpenSweep> {};
+
+namespace withy::python {
 
 void bind_sweep(py::module_& m) {
   py::class_<OpenSweep>(m, "Sweep")

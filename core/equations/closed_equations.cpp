@@ -44,6 +44,7 @@ ClosedEquations::ClosedEquations(std::shared_ptr<const Model> model, Terms terms
       mass_(dynamic_cast<const MassSolver*>(tree_.get())),
       loads_(*model_, terms),
       paths_(*model_, terms),
+      angles_(*model_),
       rows_(paths_.size()),
       speeds_(layout().speeds) {
   if (mass_ == nullptr || mass_->mass_factors_size() == 0)

@@ -8,6 +8,7 @@
 #include "withy/core/equations/pivoted_factors.hpp"
 #include "withy/core/equations/work_slices.hpp"
 #include "withy/core/kinematics/loop_paths.hpp"
+#include "withy/core/model/hinge_angles.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/forward_dynamics.hpp"
 #include "withy/core/plugin/forwarding_equations.hpp"
@@ -37,6 +38,9 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   Closing close(std::span<double> y, Work& work) const noexcept override;
   bool keeps_rank(std::span<const double> before, std::span<const double> after, const LoopRank& rank,
                   Work& work) const noexcept override;
+  double turned(std::span<const double> before, std::span<const double> after, double seconds) const noexcept override {
+    return angles_.turned(before, after, seconds);
+  }
   LoopRank rank_at(std::span<const double> y, Work& work) const override;
   std::vector<LoopCount> counts(std::span<const double> y, Work& work) const override;
   void multipliers(double t, std::span<const double> y, std::span<double> multipliers,
@@ -81,6 +85,7 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   const MassSolver* mass_;  ///< of the tree
   AppliedLoads loads_;      ///< for sensors, and for what loads measure of accelerations
   LoopPaths paths_;
+  HingeAngles angles_;
   std::vector<Slot> driven_;  ///< hinges that motions drive
   std::size_t rows_ = 0, speeds_ = 0;
   // Work memory, behind the tree's.

@@ -197,6 +197,7 @@ void Model::lay_out() {
   bodies_by_name_ = by_name(bodies_);
   hinges_by_name_ = by_name(hinges_);
   driven_.assign(hinges_.size(), false);
+  may_be_locked_.assign(hinges_.size(), false);
 }
 
 int Model::body(std::string_view name) const { return find_sorted(bodies_, bodies_by_name_, name); }

@@ -109,6 +109,8 @@ class Model {
   [[nodiscard]] const std::vector<MotionNode>& motions() const { return motions_; }
   /// Whether a motion prescribes all coordinates of a hinge.
   [[nodiscard]] bool driven(std::size_t hinge) const;
+  /// Whether events may lock a hinge, or unlock it: then what holds it is told as the effort of a motion.
+  [[nodiscard]] bool may_be_locked(std::size_t hinge) const { return may_be_locked_[hinge]; }
   /// Acceleration of gravity [m/s²], world axes.
   [[nodiscard]] const Vector3& gravity() const { return gravity_; }
   [[nodiscard]] const Layout& layout() const { return layout_; }
@@ -161,6 +163,8 @@ class Model {
   [[nodiscard]] const std::vector<SensorNode>* measured() const { return measured_.get(); }
   /// For builders of a model, before loads are added.
   void set_measured(std::shared_ptr<const std::vector<SensorNode>> sensors) { measured_ = std::move(sensors); }
+  /// For builders of a model, before sensors are bound to it.
+  void expect_lock(std::size_t hinge) { may_be_locked_[hinge] = true; }
   /// Prescribes the motion of a hinge. For builders of a model, before it is shared.
   /// \throws std::invalid_argument where there is no such hinge, it cannot move so, or it is driven already.
   void add_motion(std::string name, const std::string& hinge, std::shared_ptr<const Motion> motion);
@@ -176,7 +180,7 @@ class Model {
   Layout layout_;
   std::size_t load_scratch_ = 0;
   std::vector<int> bodies_by_name_, hinges_by_name_;  ///< indices in the order of names
-  std::vector<bool> driven_;                          ///< by hinge
+  std::vector<bool> driven_, may_be_locked_;          ///< by hinge
   std::shared_ptr<const std::vector<SensorNode>> measured_;
 };
 

@@ -98,4 +98,6 @@ bool is_of_hinge_and_load(const Model& model, const std::string& name) {
   return hinge_source(model, name) && load_source(model, name);
 }
 
+bool is_of_load(const Model& model, const std::string& name) { return load_source(model, name).has_value(); }
+
 }  // namespace withy

@@ -40,5 +40,7 @@ SignalSource find_signal(const Model& model, const std::string& name);
 
 /// Whether a name is both that of a hinge's column, which find_signal takes, and that of what a load gives.
 bool is_of_hinge_and_load(const Model& model, const std::string& name);
+/// Whether a name is that of what a load gives, which find_signal takes before the number of an output.
+bool is_of_load(const Model& model, const std::string& name);
 
 }  // namespace withy

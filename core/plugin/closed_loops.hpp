@@ -62,6 +62,13 @@ class ClosedLoops {
   /// of where ways fork no state is known to be on one of them, and short steps slide from one to the other.
   [[nodiscard]] virtual bool keeps_rank(std::span<const double> before, std::span<const double> after,
                                         const LoopRank& rank, Work& work) const noexcept = 0;
+  /// The greatest angle by which a hinge turns from one state to the next, `seconds` later [rad]: by its coordinates,
+  /// or its rates where these say more, as of a spherical hinge. keeps_rank says nothing of ways on which it is some
+  /// radians, for rows that come round again are the same.
+  [[nodiscard]] virtual double turned(std::span<const double> /*before*/, std::span<const double> /*after*/,
+                                      double /*seconds*/) const noexcept {
+    return 0;
+  }
   /// Equations of each loop at a state, counted by the rank of J M⁻¹ Jᵀ; speeds that motions prescribe are not free.
   [[nodiscard]] virtual std::vector<LoopCount> counts(std::span<const double> y, Work& work) const = 0;
   /// Multipliers λ at (t, y) [N], one an equation: where equations depend on each other, of all that give the same

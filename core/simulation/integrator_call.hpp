@@ -20,6 +20,10 @@ class IntegratorError : public PluginError {
   explicit IntegratorError(const std::string& deed)
       : PluginError("the integrator of this scene " + deed), deed_(deed) {}
   [[nodiscard]] const std::string& deed() const { return deed_; }
+  /// The same about an integrator by its name, for whoever knows the scene.
+  [[nodiscard]] PluginError named(const std::string& integrator) const {
+    return PluginError("integrator '" + integrator + "' " + deed_);
+  }
 
  private:
   std::string deed_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/integrator_call.hpp"
@@ -11,6 +12,8 @@ namespace {
 
 /// Of a step, to a four-thousandth of it.
 constexpr std::size_t most_halvings = 12;
+/// How far hinges may turn between states of which the rank is told [rad], and the most parts of a step for that.
+constexpr double most_turned = 1, most_parts = 4096;
 /// How far the coordinates of a run's start go on for a look beside it [rad, m].
 constexpr double beside = 1e-3;
 
@@ -21,6 +24,7 @@ LoopWatch::LoopWatch(const EquationsOfMotion& equations, const State& initial)
   if (loops_ == nullptr) return;
   last_ = initial;
   between_.assign(most_halvings, initial);
+  from_ = to_ = initial;
   rank_ = loops_->rank_at(initial.y, work_);
   begins_singular_ = rank_.independent < rank_beside(equations, initial);
 }
@@ -63,6 +67,21 @@ double LoopWatch::kept_until(const Stepper& stepper, const State& before, const 
   return first < middle.time ? first : kept_until(stepper, middle, after, halvings - 1);
 }
 
+double LoopWatch::kept_through(const Stepper& stepper, const State& after) {
+  const double start = last_.time, length = after.time - start;
+  const double turned = loops_->turned(last_.y, after.y, length);
+  if (!(turned > most_turned)) return kept_until(stepper, last_, after, most_halvings);
+  const double parts = std::min(std::ceil(turned / most_turned), most_parts);
+  from_ = last_;
+  for (double k = 1; k < parts; ++k) {
+    to_.time = start + length * (k / parts);
+    interpolate_step(stepper, to_.time, to_.y);
+    if (const double kept = kept_until(stepper, from_, to_, most_halvings); kept < to_.time) return kept;
+    std::swap(from_, to_);
+  }
+  return kept_until(stepper, from_, after, most_halvings);
+}
+
 std::string LoopWatch::fault(const Stepper& stepper) {
   if (loops_ == nullptr) return {};
   const State& state = stepper.state();
@@ -70,7 +89,7 @@ std::string LoopWatch::fault(const Stepper& stepper) {
     last_ = state;
     return {};
   }
-  const double before = last_.time, kept = kept_until(stepper, last_, state, most_halvings);
+  const double before = last_.time, kept = kept_through(stepper, state);
   last_ = state;
   if (kept < state.time)
     return "the equations that close the loops lose rank between t = " + brief(kept) + " and " +

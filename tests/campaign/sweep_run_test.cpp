@@ -4,10 +4,16 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <utility>
 
+#include "withy/campaign/case_lanes.hpp"
 #include "withy/campaign/store.hpp"
 #include "withy/results/results_error.hpp"
+#include "withy/study/prepared.hpp"
 #include "withy/tests/campaign/store_fixture.hpp"
+#include "withy/tests/simulation/wrapped_steps.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -135,6 +141,46 @@ initial: {hinges: {pin: {rate: [1]}}}
   const CaseResult stiff = run_case(plan, cases, 1, plugins(), {});
   EXPECT_EQ(stiff.status, "too-stiff");
   EXPECT_THAT(stiff.message, HasSubstr("its fastest motion is -1.5e+12/s: damping of load 'drag' on pin"));
+}
+
+class FailingSteps final : public test::WrappedSteps {
+ public:
+  using WrappedSteps::WrappedSteps;
+  StepResult step(double /*t_limit*/) override { throw std::runtime_error("out of order"); }
+};
+
+/// The project's plugins with an integrator of such steps.
+Registry& with_failing() {
+  static const PluginHost host({PluginHost::default_directory()});
+  static Registry* const registry = [] {
+    auto* made = new Registry;  // plugins stay for the life of the process
+    host.attach(*made);
+    Enrollment e;
+    e.add(Plugin<Integrator>{"failing", "as dopri5", {}, [](const Value&, const MakeContext&) {
+                               return std::unique_ptr<Integrator>(
+                                   std::make_unique<test::WrappedIntegrator<FailingSteps>>(
+                                       study::make_integrator(plugins(), "dopri5", 1e-6)));
+                             }});
+    made->admit(std::move(e), "test");
+    return made;
+  }();
+  return *registry;
+}
+
+TEST(Sweeps, EndWithTheNameOfAnIntegratorThatFails) {
+  const PlanFolder folder;
+  folder.write("fails.yaml", "format: withy-sweep/1\nscene: " WITHY_SOURCES R"(/scenes/pendulum.yaml
+set: {time.end: 0.5, integrator: {name: failing}}
+vary: {bodies.rod.mass: {grid: [1, 2]}}
+keep: {final: [pivot]}
+)");
+  const Plan plan = read_plan((folder / "fails.yaml").string(), with_failing());
+  try {
+    static_cast<void>(run_sweep(plan, with_failing(), Store(folder / "fails", plan, false), {1, 1, 1, {}}));
+    FAIL() << "no case can be trusted";
+  } catch (const PluginError& e) {
+    EXPECT_STREQ(e.what(), "integrator 'failing' does not step: out of order");
+  }
 }
 
 }  // namespace

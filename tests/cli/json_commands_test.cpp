@@ -40,6 +40,25 @@ TEST(Eval, GivesOneObjectWithConsistentShapes) {
   }
 }
 
+// 2 kg, 0.5 m beside the hinge.
+TEST(Eval, TellsWhatLocksCarry) {
+  const Folder folder;
+  folder.write("s.yaml", R"(format: withy/1
+time: {end: 2}
+gravity: [0, -9.81, 0]
+bodies: {a: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: a}}
+events: {let_go: {at: 1, do: {unlock: h}}}
+initial: {locked: [h]}
+)");
+  folder.write("free.json", R"({"locked": []})");
+  const json locked = result(folder, {"eval", "s.yaml"}),
+             free = result(folder, {"eval", "s.yaml", "--state", "free.json"});
+  ASSERT_EQ(locked.at("motion_efforts").size(), 1U);
+  EXPECT_NEAR(locked.at("motion_efforts")[0].get<double>(), 9.81, 1e-12);
+  EXPECT_FALSE(free.contains("motion_efforts"));
+}
+
 // 0.2 + 1 s · 0.3/s is beyond `on`: a run begins with the jets on.
 TEST(Eval, HasRelaysStandAsWhereARunBegins) {
   const Folder folder;

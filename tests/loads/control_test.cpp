@@ -334,6 +334,25 @@ TEST(Control, NamesOfAHingeAndALoadAreToldApartOrRefused) {
       << "a spring gives no number that could be measured";
 }
 
+TEST(Control, DoesNotGuessWhetherALoadOrAnOutputIsMeasured) {
+  const auto scene = [](const std::string& output, const std::string& measured) {
+    return R"(format: withy/1
+time: {end: 1}
+bodies: {a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: a}}
+outputs: {q: {type: hinge, hinge: h}, )" +
+           output + R"(: {type: expression, value: 100 + q.position}}
+loads:
+  s: {type: expression, hinge: h, value: -h}
+  k: {type: expression, hinge: h, value: )" +
+           measured + ", sample: 0.1}\n";
+  };
+  EXPECT_THAT(test::problem_of(scene("s", "s")),
+              HasSubstr("'s' is a load and an output, and either can be measured: give the output another name"));
+  EXPECT_EQ(test::problem_of(scene("s", "h")), "") << "nothing measures either";
+  EXPECT_EQ(test::problem_of(scene("far", "s + far")), "");
+}
+
 /// A sign before a name, or a difference, is no part of it.
 TEST(Control, FormulasFindLoadsFurtherDownWhateverStandsBeforeTheirNames) {
   for (const char* formula : {"-servo", "axle-servo", "2*(-servo)"})

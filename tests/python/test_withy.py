@@ -507,6 +507,21 @@ def test_a_simulation_refuses_what_is_not_its_own(slew):
     assert sim.time == 0.1
 
 
+def test_what_nobody_has_made_raises(slew):
+    simulation = withy.Simulation(slew)
+    for act in [
+        lambda: withy.Simulation.__new__(withy.Simulation).step(1),
+        lambda: withy.Simulation.__new__(withy.Simulation).time,
+        lambda: withy.Equations.__new__(withy.Equations).y0,
+        lambda: withy.Snapshot.__new__(withy.Snapshot).time,
+        lambda: simulation.restore(withy.Snapshot.__new__(withy.Snapshot)),
+    ]:
+        with pytest.raises(TypeError, match="has not made this object"):
+            act()
+    simulation.step(0.01)
+    simulation.restore(pickle.loads(pickle.dumps(simulation.snapshot())))
+
+
 def test_the_example_of_the_documentation_runs(tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
     text = (SCENES.parent / "docs" / "python.md").read_text()

@@ -17,7 +17,7 @@ class States : public SceneTest {
   States() : scene(parse_scene(file_text("scenes/spacecraft.yaml"), "spacecraft.yaml", registry)) {}
   std::string problem(const std::string& text) {
     try {
-      parse_state(text, "state.json", *scene.model, scene.initial);
+      parse_state(text, "state.json", scene);
     } catch (const SceneError& e) {
       return e.what();
     }
@@ -85,7 +85,7 @@ loads:
 )";
   const Scene plain = parse_scene(text, "s", registry);
   const auto states = [&](const Scene& of, const char* state) {
-    const State s = parse_state(state, "s", *of.model, of.initial);
+    const State s = parse_state(state, "s", of);
     const LoadSlot& slot = of.model->layout().continuous_slots.at(0);
     std::map<std::string, double> named;
     for (std::size_t i = 0; i < slot.count; ++i)
@@ -99,6 +99,9 @@ loads:
             (Named{{"filter", 1}, {"integral", 0}}));
   const Scene stated = parse_scene(text + "initial: {loads: {servo: {filter: 0.5, integral: 0.3}}}\n", "s", registry);
   EXPECT_EQ(states(stated, "hinges: {h: {position: 0.25}}"), (Named{{"filter", 0.5}, {"integral", 0.3}}));
+  // The filter would begin at 1 in the scene: said, it stays there all the same, and what is not said begins anew.
+  const Scene same = parse_scene(text + "initial: {loads: {servo: {filter: 1}}}\n", "s", registry);
+  EXPECT_EQ(states(same, "hinges: {h: {position: 0.25}}"), (Named{{"filter", 1}, {"integral", 0}}));
 }
 
 TEST_F(States, MayCarryUnitsWhereTheHingeIsKnown) {

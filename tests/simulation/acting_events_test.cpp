@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "acted_run.hpp"
 #include "withy/core/simulation/event_actions.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/core/simulation/simulate.hpp"
 
 namespace withy {
@@ -252,6 +254,35 @@ events: {latch: {hinge: turn, value: 1, direction: up, do: {lock: turn}}}
 )");
   EXPECT_EQ(run.summary.status, RunStatus::diverged);
   EXPECT_THAT(run.summary.message, HasSubstr("event 'latch' locked hinges that moved: its impulses took 5.339e+04 J"));
+}
+
+// A level arm of 2 kg whose weight acts 0.35 m from its hinge: what holds it is 2 · 9.81 · 0.35 N m, and nothing once
+// it is let go. The spring adds its own.
+TEST(ActingEvents, what_holds_a_locked_hinge_is_the_effort_of_a_motion) {
+  const Made made(R"(format: withy/1
+gravity: [0, -9.81, 0]
+time: {end: 2}
+bodies: {arm: {type: rigid, mass: 2, center_of_mass: [0.35, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {pin: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}}
+loads: {spring: {type: hinge-spring, hinge: pin, stiffness: 10, free_position: 0.1}}
+outputs:
+  held: {type: effort, hinge: pin, of: motion}
+  whole: {type: effort, hinge: pin}
+events: {let_go: {at: 1, do: {unlock: pin}}}
+initial: {locked: [pin]}
+)");
+  SensorReader sensors(made.scene.outputs, *made.equations);
+  const double weight = 2 * 9.81 * 0.35;
+  std::vector<double> values(2);
+  ASSERT_EQ(sensors.columns().size(), values.size());
+  ASSERT_TRUE(sensors.read(made.scene.initial, values));
+  EXPECT_NEAR(values[0], weight - 1, 1e-12);
+  EXPECT_NEAR(values[1], weight, 1e-12);
+  State free = made.scene.initial;
+  EventBook(*made.scene.model).set_configuration(free.y, 0);
+  ASSERT_TRUE(sensors.read(free, values));
+  EXPECT_EQ(values[0], 0);
+  EXPECT_NEAR(values[1], 1, 1e-12);
 }
 
 }  // namespace

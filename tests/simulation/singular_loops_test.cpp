@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iomanip>
 #include <numbers>
 #include <regex>
+#include <sstream>
 #include <string>
 
 #include "four_bar.hpp"
@@ -131,6 +135,73 @@ TEST(SingularLoops, AreNotWaysThatPassAForkNearBy) {
       const RunSummary summary = run(made, 1);
       EXPECT_EQ(summary.status, RunStatus::completed) << integrator << ", " << rod << ": " << summary.message;
     }
+}
+
+/// It turns evenly, so that the third step of dop853 goes round by more than a whole turn, after which all is as it
+/// was.
+TEST(SingularLoops, AreSeenInStepsOfMoreThanATurn) {
+  const Made made(scene_of({0, "57"}, {1, "57"}) + "integrator: {name: dop853, rtol: 1e-6, atol: 1e-8}\n");
+  const RunSummary summary = run(made, 4);
+  EXPECT_EQ(summary.status, RunStatus::singular) << summary.message;
+  std::smatch told;
+  ASSERT_TRUE(std::regex_search(summary.message, told, std::regex("between t = ([0-9.]+) and ([0-9.]+) s")))
+      << summary.message;
+  EXPECT_NEAR(std::stod(told[1]), (std::numbers::pi - 57 * std::numbers::pi / 180) / 2, 2e-3);
+}
+
+/// A four-bar of rods with its crank at 1 rad, turning at `rate`: ground pivots at 0 and `ground`, lengths in `size` m.
+std::string four_bar_of(double crank, double coupler, double rocker, double ground, double rate, double size,
+                        const std::string& integrator) {
+  const double x = std::cos(1.0) * crank, y = std::sin(1.0) * crank, dx = ground - x, d = std::hypot(dx, y);
+  const double along = (d * d + coupler * coupler - rocker * rocker) / (2 * d),
+               aside = std::sqrt(coupler * coupler - along * along);
+  const double qx = x + (along * dx + aside * y) / d, qy = y + (-along * y + aside * dx) / d;
+  const auto text = [](double number) {
+    std::ostringstream out;
+    out << std::setprecision(17) << number;
+    return out.str();
+  };
+  const auto rod = [&](double length) {
+    const double l = length * size, inertia = l * l / 12;
+    return "{type: rigid, mass: 1, center_of_mass: [" + text(l / 2) + ", 0, 0], inertia: [" + text(inertia / 40) +
+           ", " + text(inertia) + ", " + text(inertia) + ", 0, 0, 0], frames: {p: {position: [" + text(l) +
+           ", 0, 0]}}}\n";
+  };
+  return "format: withy/1\ngravity: [0, 0, 0]\ntime: {end: 2}\nintegrator: " + integrator +
+         "\nbodies:\n  a: " + rod(crank) + "  b: " + rod(coupler) + "  c: " + rod(rocker) + R"(hinges:
+  A: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
+  B: {type: revolute, axis: [0, 0, 1], parent: a.p, child: b}
+  C: {type: revolute, axis: [0, 0, 1], parent: world, child: c, offset: {position: [)" +
+         text(ground * size) + R"(, 0, 0]}}
+constraints: {l: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: b.p, b: c.p}}
+initial: {hinges: {A: {position: 1, rate: )" +
+         text(rate) + "}}, guess: {hinges: {B: {position: " + text(std::atan2(qy - y, qx - x) - 1) +
+         "}, C: {position: " + text(std::atan2(qy, qx - ground)) + "}}}}\n";
+}
+
+/// A parallelogram, and two kites: one folds its crank onto the ground, one lies in a line. A ten-thousandth or a
+/// hundred-thousandth of a link more there is one way alone.
+TEST(SingularLoops, OfFourBarsAreThereWhereWaysForkAndNotBesideItInAnySize) {
+  struct Lengths {
+    double crank, coupler, rocker, ground, rate;
+  };
+  const auto four_bars = [](double more) {
+    return std::array{Lengths{1, 2, 1, 2 * (1 + more), 2}, Lengths{1, 1.5, 1.5, 1 + more, -2},
+                      Lengths{1, 1 + more, 1.6, 1.6, 2}};
+  };
+  for (const double size : {1e-3, 1.0, 100.0})
+    for (const char* name : {"dopri5", "dop853", "radau"})
+      for (const double rtol : {1e-6, 1e-9}) {
+        std::ostringstream integrator;
+        integrator << "{name: " << name << ", rtol: " << rtol << ", atol: " << 0.01 * rtol * std::min(size, 1.0) << "}";
+        for (const double more : {0.0, 1e-4, 1e-5})
+          for (const Lengths& l : four_bars(more)) {
+            const Made made(four_bar_of(l.crank, l.coupler, l.rocker, l.ground, l.rate, size, integrator.str()));
+            const RunSummary summary = run(made, 2);
+            EXPECT_EQ(summary.status, more == 0 ? RunStatus::singular : RunStatus::completed)
+                << size << ", " << integrator.str() << ", " << l.coupler << ", " << more << ": " << summary.message;
+          }
+      }
 }
 
 }  // namespace

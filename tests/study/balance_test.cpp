@@ -276,5 +276,33 @@ loads: {brake: {type: hinge-spring, hinge: pin, stiffness: 0, damping: 0.3}}
   EXPECT_GT(std::stod(at.turn->greatest_displacement), 0.1);
 }
 
+/// What a run leaves of the rate of a damped hinge is no motion; of a wheel that nothing pulls there is no such rate.
+TEST(Balance, AHingeThatCreepsAboutRestIsAtRest) {
+  const auto at_rate = [](const std::string& rate) {
+    return scene_of(R"(
+bodies:
+  arm: {type: rigid, mass: 1, center_of_mass: [0.35, 0, 0], inertia: [0.01, 0.05, 0.05, 0, 0, 0]}
+  wheel: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  joint: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}
+loads: {spring: {type: hinge-spring, hinge: joint, stiffness: 30, damping: 2}}
+initial: {hinges: {joint: {rate: )" +
+                    rate + "}, axle: {rate: 1.3e-11}}}\n");
+  };
+  const Configuration creeping = at_start(at_rate("-1.3e-11"));
+  const Equilibrium found = find_equilibrium(creeping, {}, plugins());
+  EXPECT_TRUE(found.stays) << found.changing;
+  EXPECT_THAT(found.passing, testing::IsEmpty());
+  const auto rate = [&](std::size_t hinge) {
+    return creeping.state().y[creeping.layout().positions + creeping.layout().hinges[hinge].speed];
+  };
+  EXPECT_EQ(rate(0), 0);
+  EXPECT_EQ(rate(1), 1.3e-11);
+  const Equilibrium passing = find_equilibrium(at_start(at_rate("-1e-4")), {}, plugins());
+  EXPECT_FALSE(passing.stays);
+  EXPECT_THAT(passing.passing, testing::Contains("joint"));
+}
+
 }  // namespace
 }  // namespace withy::study

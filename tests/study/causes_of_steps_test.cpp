@@ -266,10 +266,10 @@ TEST(Causes, AMassMatrixThatBecomesSingularIsNoFaultOfGivenSteps) {
 }
 
 /// A boom whose hub is driven in a plane, with modes out of it, and `more`.
-CertifiedRun driven_in_a_plane(const std::string& tolerances, const std::string& out_of_plane,
+CertifiedRun driven_in_a_plane(const std::string& integrator, const std::string& out_of_plane,
                                const std::string& more = "") {
   const SceneValues values =
-      SceneValues::parse("format: withy/1\ntime: {end: 5}\nintegrator: {name: dopri5, " + tolerances + R"(}
+      SceneValues::parse("format: withy/1\ntime: {end: 5}\nintegrator: {name: " + integrator + R"(}
 bodies:
   hub: {type: rigid, mass: 5, inertia: [1, 1, 1, 0, 0, 0]}
   boom: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 30, modes: 2})" +
@@ -288,7 +288,7 @@ loads: {motor: {type: hinge-effort, hinge: axle, law: sine, amplitude: 3, period
 
 /// Without them the steps are the same, however fast they are.
 TEST(Causes, ModesThatRestLimitNoSteps) {
-  const std::string fine = "rtol: 3e-6, atol: 3e-8";
+  const std::string fine = "dopri5, rtol: 3e-6, atol: 3e-8";
   const CertifiedRun alone = driven_in_a_plane(fine, ""),
                      beside = driven_in_a_plane(fine, ", bending_z: {stiffness: 300, modes: 2}");
   ASSERT_EQ(beside.summary.steps.accepted, alone.summary.steps.accepted);
@@ -302,9 +302,19 @@ TEST(Causes, ModesThatRestLimitNoSteps) {
   EXPECT_EQ(without.moving, without.fastest);
 }
 
+/// They are what the scene says near the limit of stability too, and no fewer modes would make them longer.
+TEST(Causes, FixedStepsAreAsTheyAreGiven) {
+  const StepLimit steps = driven_in_a_plane("rk4, step: 0.015", "").certificate.steps;
+  EXPECT_NEAR(steps.mean, 0.015, 1e-4);
+  EXPECT_GT(steps.product, 0.6 * *steps.limit);
+  EXPECT_EQ(steps.cause(), "given");
+  EXPECT_FALSE(steps.fewer);
+  EXPECT_THAT(steps.unlimited, testing::IsEmpty());
+}
+
 /// A touch of 1e-13 is enough for unstable steps to grow from, and those of looser tolerances are cut by it.
 TEST(Causes, ModesThatUnstableStepsLetGrowLimitThem) {
-  const std::string loose = "rtol: 1e-4, atol: 1e-4", stiff = ", bending_z: {stiffness: 3000, modes: 2}";
+  const std::string loose = "dopri5, rtol: 1e-4, atol: 1e-4", stiff = ", bending_z: {stiffness: 3000, modes: 2}";
   const CertifiedRun rests = driven_in_a_plane(loose, stiff),
                      grows =
                          driven_in_a_plane(loose, stiff, "initial: {bodies: {boom: {modes: [0, 0, 1.0e-13, 0]}}}\n");

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "withy/core/model/switched_load.hpp"
+#include "withy/study/equilibrium.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/open_loop.hpp"
 #include "withy/study/response.hpp"
@@ -245,6 +247,39 @@ outputs: {cc: {type: control, of: c}, dd: {type: control, of: d}}
               -response(c, {"h", "h.0", {}, {}, 20, {}}).static_gain, 1e-10);
 }
 
+/// Three links of 1 m, each turned by 0.3 rad against the one before: places of tips in closed form, whichever are
+/// asked for and in what order.
+TEST(LinearModel, OfSomeTipsHasTheirPlacesAndNoOthers) {
+  const Prepared prepared = scene_of(R"(
+bodies:
+  a: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {tip: {position: [1, 0, 0]}}}
+  b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {tip: {position: [1, 0, 0]}}}
+  c: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {tip: {position: [1, 0, 0]}}}
+hinges:
+  i: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
+  j: {type: revolute, axis: [0, 0, 1], parent: a.tip, child: b}
+  k: {type: revolute, axis: [0, 0, 1], parent: b.tip, child: c}
+initial: {hinges: {i: {position: 0.3}, j: {position: 0.3}, k: {position: 0.3}}}
+)");
+  const Configuration c = at_start(prepared);
+  const LinearModel all = linear_model(c, {{"i"}, {}});
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"c.tip.y"}, {"b.tip.x", "j.0", "c.tip.y", "b.tip"}, {"a.tip.z", "c.tip.y"}}) {
+    const LinearModel some = linear_model(c, {{"i"}, names});
+    for (const Column& output : some.outputs) {
+      const Eigen::Index one = find(some.outputs, output.name), among = find(all.outputs, output.name);
+      EXPECT_EQ(some.system.C.row(one), all.system.C.row(among)) << output.name;
+      EXPECT_EQ(some.output_values[static_cast<std::size_t>(one)], all.output_values[static_cast<std::size_t>(among)]);
+    }
+    const Eigen::RowVectorXd row = some.system.C.row(find(some.outputs, "c.tip.y"));
+    EXPECT_NEAR(row[0], std::cos(0.3) + std::cos(0.6) + std::cos(0.9), 1e-14);
+    EXPECT_NEAR(row[1], std::cos(0.6) + std::cos(0.9), 1e-14);
+    EXPECT_NEAR(row[2], std::cos(0.9), 1e-14);
+    EXPECT_EQ(row.tail(3).norm(), 0);
+  }
+  EXPECT_THROW(static_cast<void>(linear_model(c, {{"i"}, {"b.tip.deflection_x"}})), InputError) << "b is rigid";
+}
+
 /// At 1e8 m a coordinate has steps of 1.5e-8 m.
 TEST(LinearModel, OfSensorsFarFromTheOriginIsThatOfSensorsNearIt) {
   for (const char* place : {"0.5", "1e8", "1e11"}) {
@@ -281,6 +316,30 @@ loads: {servo: {type: pid, of: )" +
   EXPECT_THROW(static_cast<void>(linear_model(held(acceleration), {{"ice.2"}, {"ice.2"}})), InputError);
   EXPECT_THROW(static_cast<void>(open_loop(held(acceleration), "servo")), InputError);
   EXPECT_NO_THROW(static_cast<void>(linear_model(held(rate), {{"ice.2"}, {"ice.2"}})));
+}
+
+/// A spring of -20 N m/rad by the error of another sample pushes for a whole period where it should not: such a loop
+/// grows, and "stable" would be said of it, for the error is told and nothing follows it.
+TEST(LinearModel, OfALoadThatSamplesWhatASampledControllerTellsIsRefused) {
+  const auto scene = [](const std::string& measured) {
+    return scene_of(R"(
+bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+outputs: {q: {type: hinge, hinge: h}, cc: {type: control, of: c}, twice: {type: expression, value: 2 * cc.error}}
+loads:
+  s: {type: hinge-spring, hinge: h, stiffness: 1, damping: 0.1}
+  c: {type: pid, of: h, hinge: h, proportional: 0.0001, sample: 0.5}
+  k: {type: expression, hinge: h, value: ")" +
+                    measured + "\", sample: 0.5}\n");
+  };
+  for (const std::string measured : {"20*cc.error", "20*cc.error^2", "10*twice"}) {
+    const Prepared told = scene(measured);
+    EXPECT_THROW(static_cast<void>(linear_model(at_start(told), {{"h"}, {"h.0"}})), InputError) << measured;
+    EXPECT_THROW(static_cast<void>(find_equilibrium(at_start(told), {}, plugins())), InputError) << measured;
+  }
+  for (const std::string measured : {"-20*q.position", "20*cc.command"})
+    EXPECT_NO_THROW(static_cast<void>(linear_model(at_start(scene(measured)), {{"h"}, {"h.0", "cc.error"}})))
+        << measured;
 }
 
 }  // namespace

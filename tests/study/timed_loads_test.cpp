@@ -148,5 +148,39 @@ outputs:
   EXPECT_THAT(timed(" + at.position*max(0, 1 - abs(t - 12.5)/1.5)"), ElementsAre("m"));
 }
 
+/// An integral of what `signal` says of the hinge acts on it: time changes the rate of a controller's state, and its
+/// effort by that state alone.
+Prepared with_integral_of(const std::string& signal) {
+  return scene_of(R"(
+bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}
+outputs: {q: {type: hinge, hinge: h}, e: {type: expression, value: ")" +
+                      signal + R"("}}
+loads:
+  s: {type: hinge-spring, hinge: h, stiffness: 1, damping: 1}
+  c: {type: pid, of: e, hinge: h, integral: 0.5}
+)",
+                  {"time.end=60"});
+}
+
+TEST(TimedLoads, OfWhichTimeChangesTheRatesOfTheirOwnStatesAlone) {
+  const auto seen = [](const std::string& signal) {
+    const Configuration c = at_start(with_integral_of(signal));
+    return timed_loads(c, c.state(), check_turn(c.dynamics(), c.state(), c.held()).turning);
+  };
+  const TimedLoads still = seen("q.position"), shaken = seen("q.position*(1 + 0.9*sin(2*t))"),
+                   pushed = seen("q.position - 0.3*sin(t)");
+  EXPECT_THAT(still.pushing, IsEmpty());
+  EXPECT_THAT(still.shaking, IsEmpty());
+  EXPECT_THAT(shaken.pushing, IsEmpty());
+  EXPECT_THAT(shaken.shaking, ElementsAre("c"));
+  EXPECT_THAT(pushed.pushing, ElementsAre("c"));
+  EXPECT_THAT(pushed.shaking, IsEmpty());
+  EXPECT_TRUE(linear_model(at_start(with_integral_of("q.position*(1 + 0.9*sin(2*t))")), {{"h"}, {"h.0"}}).frozen);
+  EXPECT_FALSE(linear_model(at_start(with_integral_of("q.position - 0.3*sin(t)")), {{"h"}, {"h.0"}}).frozen);
+  EXPECT_TRUE(find_equilibrium(at_start(with_integral_of("q.position")), {}, test::plugins()).stays);
+  EXPECT_FALSE(find_equilibrium(at_start(with_integral_of("q.position - 0.3*sin(t)")), {}, test::plugins()).stays);
+}
+
 }  // namespace
 }  // namespace withy::study
