@@ -1,7 +1,6 @@
 #include "withy/core/analysis/fastest_pole.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>

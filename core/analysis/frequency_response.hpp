@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "withy/core/analysis/linear_system.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <stdexcept>
 #include <type_traits>
 
 #include "withy/core/model/hinge_rates.hpp"
