@@ -10,6 +10,7 @@
 
 #include "withy/core/analysis/linear_system.hpp"
 #include "withy/core/analysis/modes.hpp"
+#include "withy/core/analysis/turning.hpp"
 
 namespace withy {
 namespace {
