@@ -192,6 +192,13 @@ double turned(const Model& model, const State& from, const State& to) {
   return angle;
 }
 
+double greatest_angular_rate(const Model& model, const Eigen::VectorXd& speeds) {
+  double rate = 0;
+  for (const ModelRate& r : hinge_rates(model))
+    if (r.angular) rate = std::max(rate, std::abs(speeds[static_cast<Eigen::Index>(r.speed)]));
+  return rate;
+}
+
 }  // namespace
 
 std::vector<Eigen::Index> free_speeds(const Held& held) {
@@ -235,17 +242,6 @@ SteadyState find_steady_state(const TangentDynamics& dynamics, const State& star
 bool is_steady_state(const TangentDynamics& dynamics, const State& state, const Held& held) {
   return Newton(dynamics, state, held).solved();
 }
-
-namespace {
-
-double greatest_angular_rate(const Model& model, const Eigen::VectorXd& speeds) {
-  double rate = 0;
-  for (const ModelRate& r : hinge_rates(model))
-    if (r.angular) rate = std::max(rate, std::abs(speeds[static_cast<Eigen::Index>(r.speed)]));
-  return rate;
-}
-
-}  // namespace
 
 bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, const State& state, const Held& held) {
   const auto n = static_cast<Eigen::Index>(held.size());
