@@ -3,7 +3,6 @@
 /// 7, "DOP853" (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6; coefficients as
 /// published there). Twelve evaluations a step, three more in a step that is interpolated.
 #include <array>
-#include <optional>
 #include <span>
 
 #include "adaptive_stepper.hpp"

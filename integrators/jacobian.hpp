@@ -8,7 +8,6 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 ///   (1 − hγA) k_i = h f(t + α_i h, y + Σ α_ij k_j) + h A Σ γ_ij k_j,   y_new = y + Σ b_i k_i;
 /// with g = Σ_{j<i} γ_ij k_j / γ the right-hand side needs no product with A: (1 − hγA)(k_i + g) = h f + g.
 #include <array>
-#include <optional>
 
 #include "adaptive_stepper.hpp"
 #include "withy/core/plugin/registry.hpp"

@@ -2,6 +2,7 @@
 /// An on-off controller with hysteresis on a rate of a hinge, as of attitude thrusters (Schmitt trigger): on
 ///   s = x − x_r + T ẋ
 /// it switches −τ on where s rises to `on` and +τ where it falls to −`on`, and off where |s| has come back to `off`.
+#include "withy/core/plugin/effortless_load.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
 
@@ -16,23 +17,13 @@ struct Relay {
   double off = 0;        ///< [rad, m]
 };
 
-class BoundHingeRelay final : public BoundLoad, public DiscretePart {
+class BoundHingeRelay final : public EffortlessLoad, public DiscretePart {
  public:
   BoundHingeRelay(std::size_t position, std::size_t speed, const Relay& relay)
       : position_(position), speed_(speed), relay_(relay) {}
 
-  std::size_t scratch() const override { return 0; }
-  void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-           std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
-  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
-    return true;  // constant between two switchings
-  }
-  std::vector<double> discontinuities() const override { return {}; }
+  using EffortlessLoad::add;
   const DiscretePart* discrete() const override { return this; }
-  double end() const override { return 0; }
-  void begin(State& /*state*/) const override {}
 
   // The one discrete state is the sign of the effort: −1, 0, +1.
   std::size_t states() const override { return 1; }

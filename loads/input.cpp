@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "withy/core/plugin/direction.hpp"
+#include "withy/core/plugin/effortless_load.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/loads/frame_load.hpp"
 #include "withy/loads/hinge_rate.hpp"
@@ -67,24 +68,15 @@ class HeldValue : public DiscretePart, public InputPort {
   std::string unit_;
 };
 
-class BoundHingeInput final : public BoundLoad, public HeldValue {
+class BoundHingeInput final : public EffortlessLoad, public HeldValue {
  public:
   BoundHingeInput(const InputTable& table, const char* unit, std::size_t speed)
       : HeldValue(table, unit), speed_(speed) {}
-  std::size_t scratch() const override { return 0; }
-  void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-           std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
-  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
-    return true;  // it does not depend on the state
-  }
+  using EffortlessLoad::add;
   std::vector<double> discontinuities() const override { return rows(); }
   const DiscretePart* discrete() const override { return this; }
   const InputPort* input() const override { return this; }
   InputPlace place() const override { return {.speed = static_cast<int>(speed_), .frame = {}}; }
-  double end() const override { return 0; }
-  void begin(State& /*state*/) const override {}
   void add(double t, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
     efforts[speed_] += value(t, discrete);
   }

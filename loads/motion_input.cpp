@@ -6,6 +6,7 @@
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/effortless_load.hpp"
 
 namespace withy {
 namespace {
@@ -15,7 +16,7 @@ enum class Sets { position, rate, acceleration };
 
 /// From t0, where the coordinate is at x0 with the rate v0, to t1 the acceleration goes in a straight line from a0 to
 /// a1. After t1 it is zero, of accelerations that are set a1. Until the host sets something the coordinate rests.
-class BoundMotionInput final : public BoundLoad, public DiscretePart, public InputPort, public HostedMotion {
+class BoundMotionInput final : public EffortlessLoad, public DiscretePart, public InputPort, public HostedMotion {
  public:
   BoundMotionInput(Sets sets, bool linear, std::size_t position, std::size_t speed, bool angular)
       : sets_(sets), linear_(linear), position_(position), speed_(speed), unit_(angular ? "rad" : "m") {
@@ -81,19 +82,9 @@ class BoundMotionInput final : public BoundLoad, public DiscretePart, public Inp
   }
   void add(double /*t*/, std::span<const double> /*discrete*/, std::span<double> /*efforts*/) const noexcept override {}
 
-  std::size_t scratch() const override { return 0; }
-  void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-           std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
-  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
-    return true;
-  }
-  std::vector<double> discontinuities() const override { return {}; }
+  using EffortlessLoad::add;
   const DiscretePart* discrete() const override { return this; }
   const InputPort* input() const override { return this; }
-  double end() const override { return 0; }
-  void begin(State& /*state*/) const override {}
 
  private:
   enum : std::size_t { set_, begins_, ends_, x0_, v0_, first_, last_, count_ };

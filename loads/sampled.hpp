@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "withy/core/plugin/digital_part.hpp"
+#include "withy/core/plugin/effortless_load.hpp"
 #include "withy/core/plugin/parameters.hpp"
 #include "withy/core/simulation/same_instant.hpp"
 #include "withy/loads/tracking.hpp"
@@ -33,7 +34,7 @@ inline bool at_sample(double t, double period) noexcept { return same_instant(st
 
 /// A controller of hinges with a sample-and-hold. Its discrete states are whether it has begun, what it told at the
 /// last sample, and the efforts on the coordinates it follows.
-class Sampled final : public BoundLoad, public DiscretePart, public DigitalPart, public LoadNumbers {
+class Sampled final : public EffortlessLoad, public DiscretePart, public DigitalPart, public LoadNumbers {
  public:
   Sampled(std::unique_ptr<TrackingLoad> controller, double period)
       : controller_(std::move(controller)),
@@ -42,14 +43,7 @@ class Sampled final : public BoundLoad, public DiscretePart, public DigitalPart,
         period_(period) {}
 
   std::size_t scratch() const override { return controller_->scratch(); }
-  void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-           std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
-  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
-    return true;  // held efforts do not change with the state
-  }
-  std::vector<double> discontinuities() const override { return {}; }  // they are seen at the samples alone
+  using EffortlessLoad::add;
   const DiscretePart* discrete() const override { return this; }
   double end() const override { return controller_->end(); }
   void begin(State& state) const override { controller_->begin(state); }

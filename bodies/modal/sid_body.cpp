@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "withy/core/shape/held_section.hpp"

@@ -6,9 +6,6 @@
 namespace withy {
 namespace {
 
-/// Below it [rad, m] a displacement is nothing, whatever its size beside others.
-constexpr double nothing_moved = 1e-3;
-
 /// The trigonometric polynomial that is 1 at one of `count` equal intervals and 0 at the others, `apart` periods from
 /// there on.
 double cardinal(Eigen::Index count, double apart) {
@@ -55,13 +52,9 @@ double rates_left(const TangentDynamics& dynamics, const State& state, const Eig
                   const Tangents& t) {
   const Layout& layout = dynamics.model().layout();
   if (layout.continuous == 0) return 0;
-  const auto n = static_cast<Eigen::Index>(layout.speeds), k = static_cast<Eigen::Index>(layout.continuous);
-  const Eigen::Map<const Eigen::VectorXd> u(state.y.data() + layout.positions, n), z(u.data() + n, k);
-  const double rate = dynamics.rates(state.time, state.y, accelerations).cwiseAbs().maxCoeff();
-  const double made_of =
-      (t.rate_by_state.cwiseAbs() * z.cwiseAbs() + t.rate_by_speed.cwiseAbs() * u.cwiseAbs()).maxCoeff() +
-      t.rate_by_position.cwiseAbs().maxCoeff() * nothing_moved + rate;
-  return rate > 0 ? rate / made_of : 0;
+  const Eigen::VectorXd rates = dynamics.rates(state.time, state.y, accelerations);
+  const double rate = rates.cwiseAbs().maxCoeff();
+  return rate > 0 ? rate / terms_of_rates(t, state, layout, rates) : 0;
 }
 
 /// Places in each interval between instants: the highest harmonic goes through π/16 from one to the next, and what a
@@ -94,7 +87,7 @@ Between between_instants(const TangentDynamics& dynamics, const State& start, co
   for (std::size_t i = 0; i < free.size(); ++i) {
     const Eigen::Index s = free[i];
     const double frequency = frequencies[static_cast<Eigen::Index>(i)], left = std::abs(here.tangents.residual[s]),
-                 size = terms[s] + std::abs(here.tangents.mass(s, s)) * frequency * frequency * nothing_moved;
+                 size = terms[s] + std::abs(here.tangents.mass(s, s)) * frequency * frequency * least_displacement;
     if (left > 0) here.left = std::max(here.left, left / size);
   }
   return here;

@@ -1,7 +1,6 @@
 #include "withy/core/analysis/fastest_pole.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -41,7 +40,7 @@ struct Cause {
 };
 
 /// A pole with its vectors: (M λ + G)(λ − C) δ + K δ = 0.
-struct Motion {
+struct PoleVectors {
   Complex pole = 0;
   Eigen::VectorXcd left, right, rate;  ///< rate = (λ − C) right
   Complex inertia = 0;                 ///< wᴴ M v
@@ -49,8 +48,8 @@ struct Motion {
 };
 
 /// Works wᴴ P v of forces K v + D (λ − C) v, one a free displacement.
-Eigen::VectorXcd works_of(const Motion& motion, const std::vector<Eigen::Index>& free, const Eigen::MatrixXd* stiffness,
-                          const Eigen::MatrixXd* damping) {
+Eigen::VectorXcd works_of(const PoleVectors& motion, const std::vector<Eigen::Index>& free,
+                          const Eigen::MatrixXd* stiffness, const Eigen::MatrixXd* damping) {
   Eigen::VectorXcd forces = Eigen::VectorXcd::Zero(motion.right.size());
   if (stiffness != nullptr) forces += (*stiffness)(free, free).cast<Complex>() * motion.right;
   if (damping != nullptr) forces += (*damping)(free, free).cast<Complex>() * motion.rate;
@@ -79,13 +78,18 @@ class Greatest {
   Cause cause_;
 };
 
+/// Stiffness and damping of a part, each by itself.
+void weigh(Greatest& greatest, const NamedPart& part, const std::vector<Eigen::Index>& free,
+           const PoleVectors& motion) {
+  greatest.weigh(works_of(motion, free, &part.by_position, nullptr), "stiffness of " + part.name, part.of_load);
+  greatest.weigh(works_of(motion, free, nullptr, &part.by_speed), "damping of " + part.name, part.of_load);
+}
+
 /// What the greatest part of the motion's forces λ² M is.
-Cause cause_of_speed(const std::vector<NamedPart>& parts, const std::vector<Eigen::Index>& free, const Motion& motion) {
+Cause cause_of_speed(const std::vector<NamedPart>& parts, const std::vector<Eigen::Index>& free,
+                     const PoleVectors& motion) {
   Greatest greatest(motion.pole * motion.pole * motion.inertia);
-  for (const NamedPart& part : parts) {
-    greatest.weigh(works_of(motion, free, &part.by_position, nullptr), "stiffness of " + part.name, part.of_load);
-    greatest.weigh(works_of(motion, free, nullptr, &part.by_speed), "damping of " + part.name, part.of_load);
-  }
+  for (const NamedPart& part : parts) weigh(greatest, part, free, motion);
   return greatest.cause();
 }
 
@@ -97,14 +101,11 @@ Cause cause_of_speed(const std::vector<NamedPart>& parts, const std::vector<Eige
 /// of one acceleration, hundreds of times their sum; each by itself would tell of the axes. Shares of all parts then
 /// add up to nothing, and where no other has one, as of a pendulum that stands on its head, it is this one.
 Cause cause_of_growth(const std::vector<NamedPart>& parts, const Eigen::MatrixXd& mass,
-                      const std::vector<Eigen::Index>& free, const Motion& motion) {
+                      const std::vector<Eigen::Index>& free, const PoleVectors& motion) {
   Greatest greatest(motion.slope);
   const NamedPart& inertia = parts.back();
-  for (const NamedPart& part : parts) {
-    if (&part == &inertia) continue;
-    greatest.weigh(works_of(motion, free, &part.by_position, nullptr), "stiffness of " + part.name, part.of_load);
-    greatest.weigh(works_of(motion, free, nullptr, &part.by_speed), "damping of " + part.name, part.of_load);
-  }
+  for (const NamedPart& part : parts)
+    if (&part != &inertia) weigh(greatest, part, free, motion);
   const Eigen::VectorXcd of_mass = motion.left.conjugate().cwiseProduct(
                              motion.pole * (mass(free, free).cast<Complex>() * motion.rate)),
                          works = works_of(motion, free, &inertia.by_position, &inertia.by_speed);
@@ -116,22 +117,6 @@ Cause cause_of_growth(const std::vector<NamedPart>& parts, const Eigen::MatrixXd
   works.cwiseAbs().maxCoeff(&cause.at);
   return cause;
 }
-
-}  // namespace
-
-Held driven_speeds(const Model& model, const State& state) {
-  const Layout& layout = model.layout();
-  Held held(layout.speeds, false);
-  const auto hold = [&](std::size_t hinge) {
-    const Slot& slot = layout.hinges[hinge];
-    for (std::size_t i = 0; i < slot.speeds; ++i) held[slot.speed + i] = true;
-  };
-  for (const MotionNode& motion : model.motions()) hold(static_cast<std::size_t>(motion.hinge));
-  for (const std::size_t hinge : locked_hinges(model, state)) hold(hinge);
-  return held;
-}
-
-namespace {
 
 /// The eigenvalue that is greatest by a measure of it, of a matrix and its units.
 template <class Measure>
@@ -171,8 +156,8 @@ bool made_by_states(Sought sought, Complex with, Complex without) {
 }
 
 /// Of the matrices of small motions at a pole, which rounding may not make exact.
-Motion motion_at(Complex value, const Tangents& t, const std::vector<Eigen::Index>& free,
-                 const Eigen::VectorXd& scale) {
+PoleVectors vectors_at(Complex value, const Tangents& t, const std::vector<Eigen::Index>& free,
+                       const Eigen::VectorXd& scale) {
   const Complex pole = value * (1 + 1e-10);
   const auto m = static_cast<Eigen::Index>(free.size());
   const auto of_free = [&](const Eigen::MatrixXd& x) -> Eigen::MatrixXcd { return x(free, free).cast<Complex>(); };
@@ -180,7 +165,7 @@ Motion motion_at(Complex value, const Tangents& t, const std::vector<Eigen::Inde
                          moving = pole * mass + of_free(t.by_speed);
   const Eigen::MatrixXcd Q = scale.cast<Complex>().asDiagonal() * (moving * turn + of_free(t.by_position)) *
                              scale.cast<Complex>().asDiagonal() / std::norm(pole);
-  Motion motion;
+  PoleVectors motion;
   motion.pole = value;
   motion.left = scale.cast<Complex>().cwiseProduct(null_vector(Q.adjoint()));
   motion.right = scale.cast<Complex>().cwiseProduct(null_vector(Q));
@@ -215,7 +200,7 @@ FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const H
     }
   }
   if (result.value == 0.0) return result;
-  const Motion motion = motion_at(result.value, t, free, units.head(m).cwiseInverse());
+  const PoleVectors motion = vectors_at(result.value, t, free, units.head(m).cwiseInverse());
   const std::vector<NamedPart> parts = named_parts(dynamics, state, t);
   const Cause cause =
       sought == Sought::growth ? cause_of_growth(parts, t.mass, free, motion) : cause_of_speed(parts, free, motion);
@@ -228,6 +213,18 @@ FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const H
 }
 
 }  // namespace
+
+Held driven_speeds(const Model& model, const State& state) {
+  const Layout& layout = model.layout();
+  Held held(layout.speeds, false);
+  const auto hold = [&](std::size_t hinge) {
+    const Slot& slot = layout.hinges[hinge];
+    for (std::size_t i = 0; i < slot.speeds; ++i) held[slot.speed + i] = true;
+  };
+  for (const MotionNode& motion : model.motions()) hold(static_cast<std::size_t>(motion.hinge));
+  for (const std::size_t hinge : locked_hinges(model, state)) hold(hinge);
+  return held;
+}
 
 FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, const Held& held) {
   return pole_by(dynamics, state, held, Sought::modulus);

@@ -10,6 +10,7 @@
 
 #include "withy/core/analysis/linear_system.hpp"
 #include "withy/core/analysis/modes.hpp"
+#include "withy/core/analysis/turning.hpp"
 
 namespace withy {
 namespace {
@@ -140,6 +141,36 @@ void conjugate(CharacteristicMode& mode) {
   for (auto& [frequency, share] : mode.lines) frequency = -frequency;
 }
 
+struct Integrated {
+  Eigen::MatrixXd product;
+  int steps = 0;
+  double changed = 1;  ///< by halving the steps, of the greatest element
+};
+
+/// With steps halved until the product stays. \param A in units that balance it
+Integrated integrated(const PeriodicMatrix& A) {
+  constexpr double beyond = std::numeric_limits<double>::infinity();
+  const auto rows = static_cast<double>(A.rows());
+  Integrated whole{monodromy(A, fewest(A)), fewest(A)};
+  double before = 2;
+  // Where halving the step brings nothing more, rounding is all that is left. Steps that are much too long may leave
+  // nothing finite.
+  while (whole.changed > 1e-11 && !(whole.changed < 1e-7 && whole.changed > 0.5 * before)) {
+    if (2 * whole.steps > most_steps || 2 * whole.steps * rows * rows * rows > most_work) break;
+    whole.steps *= 2;
+    Eigen::MatrixXd finer = monodromy(A, whole.steps);
+    before = whole.changed;
+    const double change = (finer - whole.product).cwiseAbs().maxCoeff() / finer.cwiseAbs().maxCoeff();
+    whole.changed = std::isfinite(change) ? change : beyond;
+    whole.product = std::move(finer);
+  }
+  if (whole.changed <= followed) return whole;
+  const double turns = A.mean().eigenvalues().imag().cwiseAbs().maxCoeff() * A.period() / full_turn;
+  throw std::domain_error("the fastest vibration goes to and fro " + std::to_string(std::llround(turns)) +
+                          " times within it, and small motions are not followed through all of them in " +
+                          std::to_string(whole.steps) + " steps: take fewer modes");
+}
+
 }  // namespace
 
 PeriodicMatrix::PeriodicMatrix(const std::vector<Eigen::MatrixXd>& samples, double period)
@@ -189,40 +220,6 @@ Eigen::MatrixXd monodromy(const PeriodicMatrix& A, int steps) {
   for (int k = 0; k < steps; ++k) product = step_matrix(A, k * h, h) * product;
   return product;
 }
-
-namespace {
-
-struct Integrated {
-  Eigen::MatrixXd product;
-  int steps = 0;
-  double changed = 1;  ///< by halving the steps, of the greatest element
-};
-
-/// With steps halved until the product stays. \param A in units that balance it
-Integrated integrated(const PeriodicMatrix& A) {
-  constexpr double beyond = std::numeric_limits<double>::infinity();
-  const auto rows = static_cast<double>(A.rows());
-  Integrated whole{monodromy(A, fewest(A)), fewest(A)};
-  double before = 2;
-  // Where halving the step brings nothing more, rounding is all that is left. Steps that are much too long may leave
-  // nothing finite.
-  while (whole.changed > 1e-11 && !(whole.changed < 1e-7 && whole.changed > 0.5 * before)) {
-    if (2 * whole.steps > most_steps || 2 * whole.steps * rows * rows * rows > most_work) break;
-    whole.steps *= 2;
-    Eigen::MatrixXd finer = monodromy(A, whole.steps);
-    before = whole.changed;
-    const double change = (finer - whole.product).cwiseAbs().maxCoeff() / finer.cwiseAbs().maxCoeff();
-    whole.changed = std::isfinite(change) ? change : beyond;
-    whole.product = std::move(finer);
-  }
-  if (whole.changed <= followed) return whole;
-  const double turns = A.mean().eigenvalues().imag().cwiseAbs().maxCoeff() * A.period() / full_turn;
-  throw std::domain_error("the fastest vibration goes to and fro " + std::to_string(std::llround(turns)) +
-                          " times within it, and small motions are not followed through all of them in " +
-                          std::to_string(whole.steps) + " steps: take fewer modes");
-}
-
-}  // namespace
 
 FloquetAnalysis floquet(const PeriodicMatrix& A, const Eigen::VectorXd& masses) {
   FloquetAnalysis result;

@@ -3,10 +3,10 @@
 /// 1883).
 #pragma once
 
+#include <Eigen/Core>
 #include <complex>
+#include <utility>
 #include <vector>
-
-#include "withy/core/analysis/turn.hpp"
 
 namespace withy {
 

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "withy/core/analysis/linear_system.hpp"
@@ -40,8 +39,8 @@ struct Peak {
   double omega = 0;              ///< [rad/s]
   std::optional<double> height;  ///< nothing at an undamped pole, where there is no bound
 };
-/// All within the response, in the order of frequency: found between its values by Brent's method. `poles` that lie on
-/// the edge of stability are peaks without a height.
+/// All within the response, in the order of frequency: found between its values by the golden section. `poles` that lie
+/// on the edge of stability are peaks without a height.
 std::vector<Peak> peaks(const TransferFunction& G, const std::vector<ResponseAt>& response,
                         const Eigen::VectorXcd& poles);
 

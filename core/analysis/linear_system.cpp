@@ -78,6 +78,19 @@ KnownRoots eigenvalues_with_zeros(const Eigen::MatrixXd& A, double rounding, dou
 /// What a number beside one is rounded to, in a matrix of so many rows.
 double beside_one(Eigen::Index rows) { return 2e-16 * static_cast<double>(rows); }
 
+/// Balances B and C too, as if y were the input: a state that A does not move, or that moves none, has units all the
+/// same, by which the others are not to be measured.
+void balance_with_ends(LinearSystem& s) {
+  const Eigen::Index n = s.A.rows();
+  Eigen::MatrixXd closed = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  closed << s.A, s.B, s.C, 0;
+  LinearSystem all{closed, Eigen::MatrixXd::Zero(n + 1, 0), Eigen::MatrixXd::Zero(0, n + 1), {}};
+  balance(all);
+  s.A = all.A.topLeftCorner(n, n);
+  s.B = all.A.topRightCorner(n, 1);
+  s.C = all.A.bottomLeftCorner(1, n);
+}
+
 }  // namespace
 
 Complex LinearSystem::at_frequency(double omega) const {
@@ -137,23 +150,6 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const
   return {of_states.asDiagonal() * e.topLeftCorner(n, n) * of_states.cwiseInverse().asDiagonal(),
           of_states.asDiagonal() * e.topRightCorner(n, m) * of_inputs.cwiseInverse().asDiagonal()};
 }
-
-namespace {
-
-/// Balances B and C too, as if y were the input: a state that A does not move, or that moves none, has units all the
-/// same, by which the others are not to be measured.
-void balance_with_ends(LinearSystem& s) {
-  const Eigen::Index n = s.A.rows();
-  Eigen::MatrixXd closed = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  closed << s.A, s.B, s.C, 0;
-  LinearSystem all{closed, Eigen::MatrixXd::Zero(n + 1, 0), Eigen::MatrixXd::Zero(0, n + 1), {}};
-  balance(all);
-  s.A = all.A.topLeftCorner(n, n);
-  s.B = all.A.topRightCorner(n, 1);
-  s.C = all.A.bottomLeftCorner(1, n);
-}
-
-}  // namespace
 
 KnownRoots known_poles(const LinearSystem& system) {
   LinearSystem s = system;

@@ -9,6 +9,7 @@
 #include "withy/core/analysis/coupled_modes.hpp"
 #include "withy/core/analysis/eigenpairs.hpp"
 #include "withy/core/analysis/linear_system.hpp"
+#include "withy/core/analysis/scaled_problem.hpp"
 #include "withy/core/analysis/unheld.hpp"
 
 namespace withy {
@@ -23,9 +24,7 @@ struct Scaled {
   Eigen::MatrixXd M, G, K, C;
 
   Scaled(const Tangents& t, const std::vector<Eigen::Index>& free) {
-    const auto n = static_cast<Eigen::Index>(free.size());
-    scale = t.mass.diagonal()(free).cwiseAbs();
-    for (Eigen::Index i = 0; i < n; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 1.0;
+    scale = unit_inertias(t.mass.diagonal()(free).cwiseAbs());
     const auto of_free = [&](const Eigen::MatrixXd& m) -> Eigen::MatrixXd {
       return scale.asDiagonal() * m(free, free) * scale.asDiagonal();
     };
@@ -144,32 +143,10 @@ Mode mode_of(const Root& first, const Root& partner, const Scaled& s, const std:
   return mode;
 }
 
-}  // namespace
-
-double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b, const Eigen::VectorXd& weights) {
-  const auto product = [&](const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) {
-    return x.dot(weights.cast<Complex>().cwiseProduct(y));
-  };
-  const double size = product(a, a).real() * product(b, b).real();
-  return size > 0 ? std::norm(product(a, b)) / size : 0.0;
-}
-
-std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
-  if (tangents.by_state.cols() > 0) return modes_with_states(tangents, held);
-  const std::vector<Eigen::Index> free = free_speeds(held);
-  if (free.empty()) return {};
-  const Scaled s(tangents, free);
-  const bool at_rest = s.G.isZero(0) && s.C.isZero(0);
-  const Neutral neutral(s, in_play_of(tangents, free, s));
-  const std::vector<Root> roots = at_rest && neutral.simple ? roots_at_rest(s, neutral) : roots_in_motion(s, neutral);
-
+/// Real eigenvalues belong together whose shapes are alike. The greatest first, so that zeros are left for each other.
+std::vector<Mode> pairs_of(std::vector<const Root*> real, const Scaled& s, const std::vector<Eigen::Index>& free,
+                           const Tangents& tangents) {
   std::vector<Mode> modes;
-  std::vector<const Root*> real;
-  for (const Root& r : roots) {
-    if (r.value.imag() > 0) modes.push_back(mode_of(r, {std::conj(r.value), r.shape}, s, free, tangents));
-    if (r.value.imag() == 0) real.push_back(&r);
-  }
-  // Real eigenvalues belong together whose shapes are alike. The greatest first, so that zeros are left for each other.
   std::sort(real.begin(), real.end(),
             [](const Root* a, const Root* b) { return std::abs(a->value) > std::abs(b->value); });
   const Eigen::VectorXd even = Eigen::VectorXd::Ones(s.M.rows());
@@ -195,6 +172,35 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
     if (second->value.real() > first->value.real()) std::swap(first, second);
     modes.push_back(mode_of(*first, *second, s, free, tangents));
   }
+  return modes;
+}
+
+}  // namespace
+
+double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b, const Eigen::VectorXd& weights) {
+  const auto product = [&](const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) {
+    return x.dot(weights.cast<Complex>().cwiseProduct(y));
+  };
+  const double size = product(a, a).real() * product(b, b).real();
+  return size > 0 ? std::norm(product(a, b)) / size : 0.0;
+}
+
+std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
+  if (tangents.by_state.cols() > 0) return modes_with_states(tangents, held);
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  if (free.empty()) return {};
+  const Scaled s(tangents, free);
+  const bool at_rest = s.G.isZero(0) && s.C.isZero(0);
+  const Neutral neutral(s, in_play_of(tangents, free, s));
+  const std::vector<Root> roots = at_rest && neutral.simple ? roots_at_rest(s, neutral) : roots_in_motion(s, neutral);
+
+  std::vector<Mode> modes;
+  std::vector<const Root*> real;
+  for (const Root& r : roots) {
+    if (r.value.imag() > 0) modes.push_back(mode_of(r, {std::conj(r.value), r.shape}, s, free, tangents));
+    if (r.value.imag() == 0) real.push_back(&r);
+  }
+  for (Mode& mode : pairs_of(std::move(real), s, free, tangents)) modes.push_back(std::move(mode));
   sort_modes(modes);
   return modes;
 }

@@ -1,7 +1,9 @@
 #include "withy/core/analysis/named_parts.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "withy/core/plugin/refined_difference.hpp"
 #include "withy/core/tangents/displacements.hpp"
@@ -57,6 +59,36 @@ bool add_of_states(const LoadNode& node, const Model& model, const State& state,
       node.name, [&] { return node.continuous->add_derivatives(node.view(state.time, state.y, layout, scratch), to); });
 }
 
+/// What a load does on speeds; nothing where all it does is at frames.
+std::optional<NamedPart> part_of_load(const TangentDynamics& dynamics, std::size_t load, const State& state,
+                                      const Tangents& tangents) {
+  const Model& model = dynamics.model();
+  const Layout& layout = model.layout();
+  const LoadNode& node = model.loads()[load];
+  const auto n = static_cast<Eigen::Index>(layout.speeds);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n);
+  const std::span<const double> y(state.y);
+  NamedPart part{"load '" + node.name + "'", none, none, true};
+  const bool by_itself = derivatives_call(node.name, [&] {
+    return node.load->add_derivatives(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
+                                      part.by_position, part.by_speed);
+  });
+  const bool by_states = add_of_states(node, model, state, part);
+  const auto& differenced = tangents.differenced;
+  if (node.load->frames().empty() &&
+      std::find(differenced.begin(), differenced.end(), node.name) != differenced.end()) {
+    part.by_position.setZero();
+    part.by_speed.setZero();
+    add_differences(dynamics, load, state, part);
+  } else if (!by_itself && !by_states) {
+    return {};
+  }
+  // Efforts stand on the other side of the equation.
+  part.by_position = -part.by_position;
+  part.by_speed = -part.by_speed;
+  return part;
+}
+
 }  // namespace
 
 std::vector<NamedPart> named_parts(const TangentDynamics& dynamics, const State& state, const Tangents& tangents) {
@@ -81,30 +113,10 @@ std::vector<NamedPart> named_parts(const TangentDynamics& dynamics, const State&
     part.by_speed.block(at, at, shape.modes(), shape.modes()) = shape.damping;
     take(std::move(part));
   }
-  const std::span<const double> y(state.y);
   bool at_frames = false;
   for (std::size_t l = 0; l < model.loads().size(); ++l) {
-    const LoadNode& node = model.loads()[l];
-    at_frames = at_frames || !node.load->frames().empty();
-    NamedPart part{"load '" + node.name + "'", none, none, true};
-    const auto& differenced = tangents.differenced;
-    const bool by_itself = derivatives_call(node.name, [&] {
-      return node.load->add_derivatives(state.time, y.first(layout.positions),
-                                        y.subspan(layout.positions, layout.speeds), part.by_position, part.by_speed);
-    });
-    const bool by_states = add_of_states(node, model, state, part);
-    if (node.load->frames().empty() &&
-        std::find(differenced.begin(), differenced.end(), node.name) != differenced.end()) {
-      part.by_position.setZero();
-      part.by_speed.setZero();
-      add_differences(dynamics, l, state, part);
-    } else if (!by_itself && !by_states) {
-      continue;
-    }
-    // Efforts stand on the other side of the equation.
-    part.by_position = -part.by_position;
-    part.by_speed = -part.by_speed;
-    take(std::move(part));
+    at_frames = at_frames || !model.loads()[l].load->frames().empty();
+    if (std::optional<NamedPart> part = part_of_load(dynamics, l, state, tangents)) take(std::move(*part));
   }
   // Wrenches at frames are not told from what the frames' bodies do.
   if (at_frames) rest.name += ", and loads at frames", rest.of_load = true;

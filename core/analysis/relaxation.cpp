@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/analysis/scaled_problem.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 
 namespace withy {
@@ -24,9 +25,7 @@ class Free {
       : dynamics_(dynamics),
         free_(free),
         rest_(dynamics.steady_accelerations(state.time)),
-        unit_(dynamics.mass_diagonal(state.time, state.y)(free)) {
-    for (double& m : unit_) m = m > 0 ? 1 / std::sqrt(m) : 1.0;
-  }
+        unit_(unit_inertias(dynamics.mass_diagonal(state.time, state.y)(free))) {}
   /// \returns whether all is finite.
   bool look(const State& state) {
     const Stiffness t = dynamics_.stiffness(state.time, state.y, rest_);
@@ -55,10 +54,7 @@ class Free {
 /// Of the free speeds those that turn something.
 std::vector<Eigen::Index> turning(const Model& model, const std::vector<Eigen::Index>& free) {
   std::vector<bool> angular(model.layout().speeds);
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    std::size_t s = model.layout().hinges[h].speed;
-    for (const HingeRate& r : hinge_rates(*model.hinges()[h].hinge)) angular[s++] = r.angular;
-  }
+  for (const ModelRate& rate : hinge_rates(model)) angular[rate.speed] = rate.angular;
   std::vector<Eigen::Index> found;
   for (std::size_t k = 0; k < free.size(); ++k)
     if (angular[static_cast<std::size_t>(free[k])]) found.push_back(static_cast<Eigen::Index>(k));

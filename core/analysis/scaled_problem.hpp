@@ -3,11 +3,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
 namespace withy {
+
+/// Units of displacements in which inertias are one; one where there is none. \param mass M_ii
+inline Eigen::VectorXd unit_inertias(Eigen::VectorXd mass) {
+  for (double& m : mass) m = m > 0 ? 1 / std::sqrt(m) : 1.0;
+  return mass;
+}
 
 /// What balances at a steady state: forces on the free speeds, and rates of the continuous states of loads.
 struct Imbalance {
@@ -25,9 +32,7 @@ struct Change {
 class ScaledProblem {
  public:
   /// \param mass M_ii of the free speeds
-  explicit ScaledProblem(const Eigen::VectorXd& mass) : of_free_(mass.cwiseAbs().cwiseSqrt()) {
-    for (double& s : of_free_) s = s > 0 ? 1 / s : 1.0;
-  }
+  explicit ScaledProblem(const Eigen::VectorXd& mass) : of_free_(unit_inertias(mass.cwiseAbs())) {}
 
   /// K of the free coordinates with what states do to them and they to rates. A state's unit is what forces as much as
   /// the stiffest coordinate does; a rate's row is as large as that.

@@ -2,31 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "withy/core/model/hinge_rates.hpp"
 
 namespace withy {
 namespace {
 
-/// Calls `meet(element of the coordinates in y, rate, whether it turns)` for every coordinate whose derivative is a
-/// speed.
-template <class Meet>
-void for_each_rate(const Model& model, const State& state, Meet&& meet) {
-  const Layout& layout = model.layout();
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    std::size_t s = layout.positions + layout.hinges[h].speed;
-    for (const HingeRate& rate : hinge_rates(*model.hinges()[h].hinge)) {
-      if (rate.coordinate) meet(layout.hinges[h].position + *rate.coordinate, state.y[s], rate.angular);
-      ++s;
-    }
-  }
+double rate_at(const Model& model, const State& state, const ModelRate& rate) {
+  return state.y[model.layout().positions + rate.speed];
 }
 
 double fastest_slide(const Model& model, const State& state) {
   double fastest = 0;
-  for_each_rate(model, state, [&](std::size_t, double rate, bool angular) {
-    if (!angular) fastest = std::max(fastest, std::abs(rate));
-  });
+  for (const ModelRate& rate : hinge_rates(model))
+    if (rate.position && !rate.angular) fastest = std::max(fastest, std::abs(rate_at(model, state, rate)));
   return fastest;
 }
 
@@ -42,12 +32,13 @@ bool slides_steadily(const TangentDynamics& dynamics, const State& state, const 
   const double fastest = fastest_slide(dynamics.model(), state);
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (fastest == 0 || free.empty()) return true;
+  const std::vector<ModelRate> rates = hinge_rates(dynamics.model());
   const Eigen::VectorXd rest = dynamics.steady_accelerations(state.time);
   const Eigen::VectorXd here = dynamics.residual(state.time, state.y, rest);
   for (const double way : ways) {
     State there = state;
-    for_each_rate(dynamics.model(), state,
-                  [&](std::size_t at, double rate, bool) { there.y[at] += rate * (way / fastest); });
+    for (const ModelRate& rate : rates)
+      if (rate.position) there.y[*rate.position] += rate_at(dynamics.model(), state, rate) * (way / fastest);
     const Eigen::VectorXd changed = dynamics.residual(there.time, there.y, rest) - here;
     const Eigen::VectorXd terms = dynamics.terms_in_play(there.time, there.y, rest);
     for (const Eigen::Index i : free)

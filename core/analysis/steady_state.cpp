@@ -177,10 +177,6 @@ class Newton {
   bool singular_ = false;
 };
 
-}  // namespace
-
-namespace {
-
 /// No mode moves.
 State at_rest(const Layout& layout, State state) {
   for (const Slot& slot : layout.bodies)
@@ -191,13 +187,16 @@ State at_rest(const Layout& layout, State state) {
 /// The greatest angle that a hinge has come by [rad], of coordinates that are one.
 double turned(const Model& model, const State& from, const State& to) {
   double angle = 0;
-  for (std::size_t h = 0; h < model.hinges().size(); ++h)
-    for (const HingeRate& r : hinge_rates(*model.hinges()[h].hinge)) {
-      if (!r.angular || !r.coordinate) continue;
-      const std::size_t i = model.layout().hinges[h].position + *r.coordinate;
-      angle = std::max(angle, std::abs(to.y[i] - from.y[i]));
-    }
+  for (const ModelRate& rate : hinge_rates(model))
+    if (rate.angular && rate.position) angle = std::max(angle, std::abs(to.y[*rate.position] - from.y[*rate.position]));
   return angle;
+}
+
+double greatest_angular_rate(const Model& model, const Eigen::VectorXd& speeds) {
+  double rate = 0;
+  for (const ModelRate& r : hinge_rates(model))
+    if (r.angular) rate = std::max(rate, std::abs(speeds[static_cast<Eigen::Index>(r.speed)]));
+  return rate;
 }
 
 }  // namespace
@@ -243,22 +242,6 @@ SteadyState find_steady_state(const TangentDynamics& dynamics, const State& star
 bool is_steady_state(const TangentDynamics& dynamics, const State& state, const Held& held) {
   return Newton(dynamics, state, held).solved();
 }
-
-namespace {
-
-double greatest_angular_rate(const Model& model, const Eigen::VectorXd& speeds) {
-  double rate = 0;
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    std::size_t s = model.layout().hinges[h].speed;
-    for (const HingeRate& r : hinge_rates(*model.hinges()[h].hinge)) {
-      if (r.angular) rate = std::max(rate, std::abs(speeds[static_cast<Eigen::Index>(s)]));
-      ++s;
-    }
-  }
-  return rate;
-}
-
-}  // namespace
 
 bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, const State& state, const Held& held) {
   const auto n = static_cast<Eigen::Index>(held.size());

@@ -2,7 +2,6 @@
 /// States that stay as they are: static equilibrium, and steady spin with hinges held at constant rates.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "withy/core/tangents/tangent_dynamics.hpp"

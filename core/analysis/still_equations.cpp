@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "withy/core/analysis/scaled_problem.hpp"
 #include "withy/core/analysis/unheld.hpp"
 
 namespace withy {
@@ -28,9 +29,7 @@ Eigen::MatrixXd unheld_motions(const Tangents& t, const Held& held, const HeldNu
   const std::vector<Eigen::Index> free = free_speeds(held);
   const auto m = static_cast<Eigen::Index>(free.size());
   const Eigen::Index k = t.by_state.cols(), d = numbers.renewed.rows(), all = m + k + d;
-  // Coordinates in which inertias are one.
-  Eigen::VectorXd scale = t.mass.diagonal()(free).cwiseAbs();
-  for (double& s : scale) s = s > 0 ? 1 / std::sqrt(s) : 1.0;
+  const Eigen::VectorXd scale = unit_inertias(t.mass.diagonal()(free).cwiseAbs());
   // A displacement stays where its rate makes up for what the turning of its coordinates does to it.
   const Eigen::MatrixXd C = t.drift(free, free);
   Eigen::MatrixXd still = Eigen::MatrixXd::Zero(all, all);

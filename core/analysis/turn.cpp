@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -22,69 +21,8 @@ std::vector<double> compared_shares() {
   shares.insert(shares.end(), in_no_ratio.begin(), in_no_ratio.end());
   return shares;
 }
-/// A share of terms that cancel which counts as rounding, and the least displacement [rad, m] it is taken of.
-constexpr double balanced_share = 1e-9, least_displacement = 1e-3;
-
-/// The rate of a motion that is constant for as long as can be seen; nothing where it is not.
-std::optional<double> constant_rate(const Motion& motion, double t) {
-  const double rate = motion.at(t).rate;
-  const double span = std::max(1.0, rate != 0 ? full_turn / std::abs(rate) : 0.0);
-  for (int k = 0; k <= 64; ++k) {
-    const MotionPoint point = motion.at(t + span * k / 64);
-    if (std::abs(point.rate - rate) > 1e-12 * std::abs(rate) || std::abs(point.acceleration) > 1e-12 * std::abs(rate))
-      return {};
-  }
-  return rate;
-}
-
-/// The least whole number n ≤ 24 with n·ratio whole too; 0 where there is none.
-int common_multiple(double ratio) {
-  for (int n = 1; n <= 24; ++n) {
-    if (std::abs(n * ratio - std::round(n * ratio)) <= 1e-9 * std::max(1.0, n * ratio)) return n;
-  }
-  return 0;
-}
-
-/// Adds a rate to the common period of those before.
-void add_rate(Turning& turning, double rate, bool angular, const std::string& name) {
-  if (rate == 0 || !turning.problem.empty()) return;
-  if (!angular) {
-    turning.problem = "'" + name + "' moves along a line and does not come back";
-    return;
-  }
-  const double own = full_turn / std::abs(rate);
-  if (turning.period == 0) {
-    turning.period = own;
-  } else if (const int n = common_multiple(turning.period / own); n > 0) {
-    turning.period *= n;
-  } else {
-    turning.problem = "the hinges turn at rates without a common period ('" + name + "')";
-  }
-}
-
-/// [s] a turn of the hinge that is slowest; one that moves along a line goes 2π m. 0: none moves.
-double longest_turn(const Turning& turning, const Layout& layout, const State& state) {
-  double longest = 0;
-  for (const std::size_t s : turning.speeds)
-    longest = std::max(longest, full_turn / std::abs(state.y[layout.positions + s]));
-  return longest;
-}
-
-/// Carries the quaternion of a hinge, q̇ = N(q) ω, on with a constant angular velocity: |ω| t/2 along its great circle.
-void turn_quaternion(const Hinge& hinge, const std::vector<HingeRate>& rates, const std::vector<double>& angular,
-                     double after, std::span<double> x) {
-  double squares = 0;
-  for (const double rate : angular) squares += rate * rate;
-  if (squares == 0) return;
-  const double speed = std::sqrt(squares), half = 0.5 * speed * after;
-  std::vector<double> along(x.size());
-  hinge.derivatives(x, angular, along);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const bool apart =
-        std::any_of(rates.begin(), rates.end(), [&](const HingeRate& rate) { return rate.coordinate == i; });
-    if (!apart) x[i] = std::cos(half) * x[i] + 2 * std::sin(half) / speed * along[i];
-  }
-}
+/// A share of terms that cancel which counts as rounding.
+constexpr double balanced_share = 1e-9;
 
 /// Of a model at a state.
 struct Balance {
@@ -111,10 +49,7 @@ Balance balance_of(const TangentDynamics& dynamics, const Tangents& t, const Sta
   b.terms = dynamics.terms_in_play(state.time, state.y, rest)(free);
   if (layout.continuous == 0) return b;
   b.rates = dynamics.rates(state.time, state.y, rest);
-  const auto n = static_cast<Eigen::Index>(layout.speeds), k = static_cast<Eigen::Index>(layout.continuous);
-  const Eigen::Map<const Eigen::VectorXd> u(state.y.data() + layout.positions, n), z(u.data() + n, k);
-  b.measured = (t.rate_by_state.cwiseAbs() * z.cwiseAbs() + t.rate_by_speed.cwiseAbs() * u.cwiseAbs()).maxCoeff() +
-               t.rate_by_position.cwiseAbs().maxCoeff() * least_displacement + b.rates.cwiseAbs().maxCoeff();
+  b.measured = terms_of_rates(t, state, layout, b.rates);
   return b;
 }
 
@@ -139,6 +74,11 @@ bool alike(const Tangents& here, const Tangents& there, const Balance& balance, 
     }
   }
   return true;
+}
+
+/// The state at one of `count` equal intervals of the period.
+State at_instant(const Model& model, const State& start, const Turning& turning, Eigen::Index k, Eigen::Index count) {
+  return carried(model, turning, start, turning.period * static_cast<double>(k) / static_cast<double>(count));
 }
 
 /// d/dt at `count` equal intervals of a period, of the trigonometric polynomial through the values there (count odd).
@@ -169,9 +109,7 @@ class Collocation {
         D2_(D_ * D_) {
     turn_.period = turning.period;
     turn_.constant = false;
-    for (Eigen::Index k = 0; k < count; ++k)
-      base_.push_back(carried(dynamics.model(), turning, start,
-                              turning.period * static_cast<double>(k) / static_cast<double>(count)));
+    for (Eigen::Index k = 0; k < count; ++k) base_.push_back(at_instant(dynamics.model(), start, turning, k, count));
     locate_coordinates();
   }
 
@@ -197,14 +135,8 @@ class Collocation {
   /// The free coordinates must be those whose rates are the speeds.
   void locate_coordinates() {
     std::vector<Eigen::Index> position(layout_.speeds, -1);
-    for (std::size_t h = 0; h < layout_.hinges.size(); ++h) {
-      const Slot& slot = layout_.hinges[h];
-      const std::vector<HingeRate> rates = hinge_rates(*dynamics_.model().hinges()[h].hinge);
-      for (std::size_t i = 0; i < slot.speeds; ++i) {
-        if (rates[i].coordinate)
-          position[slot.speed + i] = static_cast<Eigen::Index>(slot.position + *rates[i].coordinate);
-      }
-    }
+    for (const ModelRate& rate : hinge_rates(dynamics_.model()))
+      if (rate.position) position[rate.speed] = static_cast<Eigen::Index>(*rate.position);
     for (const Slot& slot : layout_.bodies) {
       for (std::size_t i = 0; i < slot.speeds; ++i)
         position[slot.speed + i] = static_cast<Eigen::Index>(slot.position + i);
@@ -283,101 +215,19 @@ Eigen::MatrixXd scaled_form(const Tangents& t, const Held& held, const std::vect
 
 }  // namespace
 
-Turning turning(const Model& model, const State& state, double period) {
-  Turning result;
-  const Layout& layout = model.layout();
-  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
-    const Slot& slot = layout.hinges[h];
-    if (model.driven(h)) continue;
-    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-    double squares = 0;  // of an angular velocity, about whose axis it turns
-    for (std::size_t i = 0; i < slot.speeds; ++i) {
-      const double rate = state.y[layout.positions + slot.speed + i];
-      if (rate == 0) continue;
-      result.speeds.push_back(slot.speed + i);
-      if (rates[i].coordinate)
-        add_rate(result, rate, rates[i].angular, slot.name);
-      else
-        squares += rate * rate;
-    }
-    add_rate(result, std::sqrt(squares), true, slot.name);
-  }
-  for (const MotionNode& node : model.motions()) {
-    if (node.motion->locks() || period > 0) continue;
-    const auto h = static_cast<std::size_t>(node.hinge);
-    if (const std::optional<double> rate = constant_rate(*node.motion, state.time)) {
-      add_rate(result, *rate, hinge_rates(*model.hinges()[h].hinge)[0].angular, layout.hinges[h].name);
-    } else if (result.problem.empty()) {
-      result.problem = "motion '" + node.name + "' does not turn at a constant rate: give the period";
-    }
-  }
-  if (period > 0) {
-    if (result.period > 0 && std::abs(std::remainder(period, result.period)) > 1e-9 * period)
-      result.problem = "the hinges do not come back after the period given";
-    result.period = period;
-  }
-  if (!result.problem.empty()) result.period = 0;
-  return result;
-}
-
-State carried(const Model& model, const Turning& turning, const State& start, double after) {
-  State state = start;
-  state.time += after;
-  const Layout& layout = model.layout();
-  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
-    const Slot& slot = layout.hinges[h];
-    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-    std::vector<double> angular(slot.speeds, 0.0);
-    for (std::size_t i = 0; i < slot.speeds; ++i) {
-      const std::size_t s = slot.speed + i;
-      if (std::find(turning.speeds.begin(), turning.speeds.end(), s) == turning.speeds.end()) continue;
-      if (const auto x = rates[i].coordinate)
-        state.y[slot.position + *x] += after * start.y[layout.positions + s];
-      else
-        angular[i] = start.y[layout.positions + s];
-    }
-    turn_quaternion(*model.hinges()[h].hinge, rates, angular, after,
-                    std::span(state.y).subspan(slot.position, slot.positions));
-  }
-  model.prescribe(state);
-  return state;
-}
-
-double one_turn(const Model& model, const Turning& turning, const State& state) {
-  if (turning.period > 0) return turning.period;
-  double longest = 0;
-  for (const std::size_t s : turning.speeds)
-    longest = std::max(longest, full_turn / std::abs(state.y[model.layout().positions + s]));
-  return longest;
-}
-
-std::vector<std::size_t> uneven_motions(const TangentDynamics& dynamics, const State& state, const Held& held) {
-  const Model& model = dynamics.model();
-  std::vector<std::size_t> uneven;
-  for (std::size_t m = 0; m < model.motions().size(); ++m)
-    if (const Motion& motion = *model.motions()[m].motion; !motion.locks() && !constant_rate(motion, state.time))
-      uneven.push_back(m);
-  const std::vector<Eigen::Index> free = free_speeds(held);
-  if (uneven.empty() || free.empty()) return {};
-  const Tangents t = dynamics.tangents(state.time, state.y, dynamics.steady_accelerations(state.time));
-  std::erase_if(uneven, [&](std::size_t m) {
-    const auto hinge = static_cast<std::size_t>(model.motions()[m].hinge);
-    const auto driven = static_cast<Eigen::Index>(model.layout().hinges[hinge].speed);
-    const auto unmoved = [&](const Eigen::MatrixXd& by) { return by(free, driven).isZero(0); };
-    return unmoved(t.mass) && unmoved(t.by_position) && unmoved(t.by_speed) &&
-           (t.rate_by_position.size() == 0 ||
-            (t.rate_by_position.col(driven).isZero(0) && t.rate_by_speed.col(driven).isZero(0)));
-  });
-  return uneven;
+double terms_of_rates(const Tangents& t, const State& state, const Layout& layout, const Eigen::VectorXd& rates) {
+  const auto n = static_cast<Eigen::Index>(layout.speeds), k = static_cast<Eigen::Index>(layout.continuous);
+  const Eigen::Map<const Eigen::VectorXd> u(state.y.data() + layout.positions, n), z(u.data() + n, k);
+  return (t.rate_by_state.cwiseAbs() * z.cwiseAbs() + t.rate_by_speed.cwiseAbs() * u.cwiseAbs()).maxCoeff() +
+         t.rate_by_position.cwiseAbs().maxCoeff() * least_displacement + rates.cwiseAbs().maxCoeff();
 }
 
 TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const Held& held, double period) {
   TurnCheck check;
   check.turning = turning(dynamics.model(), steady, period);
   const std::vector<Eigen::Index> free = free_speeds(held);
-  const Layout& layout = dynamics.model().layout();
   // Without a common period what is looked at is as much of the motion.
-  const double over = check.turning.period > 0 ? check.turning.period : longest_turn(check.turning, layout, steady);
+  const double over = one_turn(dynamics.model(), check.turning, steady);
   if (over == 0 || free.empty()) return check;
   Tangents at_start;
   Eigen::MatrixXd first;
@@ -411,8 +261,7 @@ Turn find_turn(const TangentDynamics& dynamics, const State& start, const Held& 
   turn.period = turning.period;
   const std::vector<Eigen::Index> free = free_speeds(held);
   for (Eigen::Index k = 0; k < count; ++k) {
-    turn.states.push_back(carried(dynamics.model(), turning, start,
-                                  turning.period * static_cast<double>(k) / static_cast<double>(count)));
+    turn.states.push_back(at_instant(dynamics.model(), start, turning, k, count));
     const State& state = turn.states.back();
     turn.points.push_back(dynamics.tangents(state.time, state.y, dynamics.steady_accelerations(state.time)));
     if (free.empty()) continue;

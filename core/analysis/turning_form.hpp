@@ -3,6 +3,7 @@
 #pragma once
 
 #include "withy/core/analysis/floquet.hpp"
+#include "withy/core/analysis/turn.hpp"
 
 namespace withy {
 

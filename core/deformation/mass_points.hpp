@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/effortless_load.hpp"
 
 namespace withy {
 
@@ -32,7 +33,7 @@ std::vector<MassPoint> mass_points(const std::vector<Particle>& particles, const
 /// A load on distributed mass: its wrench at a mass point depends on the motion of that point alone; at one without
 /// second moments it is a force, and the point's turning, which nobody finds, is that of its body. The mass points of
 /// all bodies are frames to it, and to whatever asks where it acts: those of body b are {b, −1}, {b, −2}, …
-class FieldLoad : public BoundLoad {
+class FieldLoad : public EffortlessLoad {
  public:
   explicit FieldLoad(const Model& model);
   /// Of the wrench at a mass point (moment, force) by a turn, the position, the angular velocity and the velocity of
@@ -54,15 +55,6 @@ class FieldLoad : public BoundLoad {
 
   std::span<const FrameIndex> frames() const override { return frames_; }
   void wrenches(double t, std::span<const FrameMotion> motions, std::span<Wrench> wrenches) const noexcept override;
-  std::size_t scratch() const override { return 0; }
-  void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-           std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
-  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
-    return true;
-  }
-  void begin(State& /*state*/) const override {}
 
  private:
   std::vector<std::shared_ptr<const Body>> bodies_;

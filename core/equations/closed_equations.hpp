@@ -89,7 +89,7 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   std::vector<Slot> driven_;  ///< hinges that motions drive
   std::size_t rows_ = 0, speeds_ = 0;
   // Work memory, behind the tree's.
-  Region tree_memory_, of_paths_, of_loads_;
+  Region of_paths_, of_loads_;
   Slice<double> gaps_, rates_, multipliers_, left_;  ///< one a closing equation
   Slice<double> J_, J_after_, Z_, held_;             ///< equations × speeds; held_: M Z − Jᵀ of driven speeds
   Slice<double> A_, L_, other_A_, other_L_;          ///< equations × equations

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 #include "withy/core/equations/closed_equations.hpp"

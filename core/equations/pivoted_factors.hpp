@@ -6,6 +6,13 @@
 
 namespace withy::equations {
 
+/// Σ a_i b_i of two rows of n numbers.
+inline double row_product(const double* a, const double* b, std::size_t n) {
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 /// Cholesky factors of A with A_ii ≥ 0, rows in the order of what is left of them: at each step the greatest comes next
 /// of those which the ones before explain least, as a share of themselves (to a factor of two). A row that is next to
 /// nothing, as where a crank stands across, would pass its rounding on to all that depend on it. All arrays are the

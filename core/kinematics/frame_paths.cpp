@@ -1,6 +1,5 @@
 #include "withy/core/kinematics/frame_paths.hpp"
 
-#include <algorithm>
 
 #include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/kinematics/frame_pass.hpp"

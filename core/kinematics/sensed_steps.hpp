@@ -2,7 +2,6 @@
 /// Sets the hinges' steps and the modal coordinates of a pass from a state, in the scalar of the pass.
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "withy/core/kinematics/frame_pass.hpp"

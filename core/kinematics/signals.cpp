@@ -1,7 +1,6 @@
 #include "withy/core/kinematics/signals.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/plugin/effortless_load.hpp"
 #include "withy/core/plugin/hinge.hpp"
-#include "withy/core/plugin/load.hpp"
 
 namespace withy {
 
@@ -28,7 +28,7 @@ std::optional<std::vector<ClosingEquation>> closing_equations(const Hinge& hinge
 /// A hinge that closes a loop: F is at `offset` in frame a, M is frame b. It is bound to a model where loads are, since
 /// what it exerts are wrenches at frames; their sizes are the multipliers of the equations of motion, so that of itself
 /// it gives none. A body −1 is the world.
-class LoopClosure final : public BoundLoad {
+class LoopClosure final : public EffortlessLoad {
  public:
   /// \throws std::invalid_argument where both frames are on one body, or both in the world.
   LoopClosure(const Model& model, std::string name, FrameIndex a, FrameIndex b, Pose offset,
@@ -38,17 +38,6 @@ class LoopClosure final : public BoundLoad {
   [[nodiscard]] const FrameIndex& b() const { return b_; }
   [[nodiscard]] const Pose& offset() const { return offset_; }
   [[nodiscard]] const std::vector<ClosingEquation>& equations() const { return equations_; }
-
-  [[nodiscard]] std::size_t scratch() const override { return 0; }
-  void add(double, std::span<const double>, std::span<const double>, std::span<double>,
-           std::span<double>) const noexcept override {}
-  bool add_derivatives(double, std::span<const double>, std::span<const double>, Eigen::Ref<Eigen::MatrixXd>,
-                       Eigen::Ref<Eigen::MatrixXd>) const override {
-    return true;
-  }
-  [[nodiscard]] std::vector<double> discontinuities() const override { return {}; }
-  [[nodiscard]] double end() const override { return 0; }
-  void begin(State&) const override {}
 
  private:
   std::string name_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/effortless_load.hpp"
 #include "withy/core/plugin/sensor.hpp"
 
 namespace withy {
@@ -64,22 +65,13 @@ struct EventPlan {
 
 /// The discrete states of a model's events, as a load that gives no effort: the configuration, then five numbers an
 /// event.
-class EventStates final : public BoundLoad, private DiscretePart {
+class EventStates final : public EffortlessLoad, private DiscretePart {
  public:
   explicit EventStates(std::shared_ptr<const EventPlan> plan) : plan_(std::move(plan)) {}
   [[nodiscard]] const EventPlan& plan() const { return *plan_; }
 
-  std::size_t scratch() const override { return 0; }
-  void add(double, std::span<const double>, std::span<const double>, std::span<double>,
-           std::span<double>) const noexcept override {}
-  bool add_derivatives(double, std::span<const double>, std::span<const double>, Eigen::Ref<Eigen::MatrixXd>,
-                       Eigen::Ref<Eigen::MatrixXd>) const override {
-    return true;
-  }
-  std::vector<double> discontinuities() const override { return {}; }
+  using EffortlessLoad::add;
   const DiscretePart* discrete() const override { return this; }
-  double end() const override { return 0; }
-  void begin(State& /*state*/) const override {}
 
  private:
   std::size_t states() const override;

@@ -1,5 +1,7 @@
 #include "withy/core/model/hinge_rates.hpp"
 
+#include "withy/core/model/model.hpp"
+
 namespace withy {
 namespace {
 
@@ -41,6 +43,19 @@ std::vector<HingeRate> hinge_rates(const Hinge& hinge) {
     rates[r] = 0;
   }
   return result;
+}
+
+std::vector<ModelRate> hinge_rates(const Model& model) {
+  std::vector<ModelRate> all;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    std::size_t speed = slot.speed;
+    for (const HingeRate& rate : hinge_rates(*model.hinges()[h].hinge)) {
+      ModelRate& placed = all.emplace_back(ModelRate{speed++, {}, rate.angular});
+      if (rate.coordinate) placed.position = slot.position + *rate.coordinate;
+    }
+  }
+  return all;
 }
 
 }  // namespace withy

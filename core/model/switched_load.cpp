@@ -6,6 +6,7 @@
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/course_of_time.hpp"
 #include "withy/core/plugin/digital_part.hpp"
+#include "withy/core/plugin/effortless_load.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/plugin/kinks.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
@@ -212,7 +213,8 @@ class SwitchedInput final : public InputPort {
   const InputPort& port_;
 };
 
-class BoundSwitchedLoad final : public BoundLoad,
+/// What acts depends on the discrete states: all of it is in the parts that see them.
+class BoundSwitchedLoad final : public EffortlessLoad,
                                 public LoadNumbers,
                                 public LoadOfForms,
                                 public Kinks,
@@ -228,13 +230,6 @@ class BoundSwitchedLoad final : public BoundLoad,
     std::size_t most = 0;
     for (const auto& form : forms_) most = std::max(most, form->scratch());
     return most;
-  }
-  // What acts depends on the discrete states: all of it is in the parts that see them.
-  void add(double, std::span<const double>, std::span<const double>, std::span<double>,
-           std::span<double>) const noexcept override {}
-  bool add_derivatives(double, std::span<const double>, std::span<const double>, Eigen::Ref<Eigen::MatrixXd>,
-                       Eigen::Ref<Eigen::MatrixXd>) const override {
-    return true;
   }
   std::span<const FrameIndex> frames() const override { return forms_.front()->frames(); }
   void wrenches(double, std::span<const FrameMotion>, std::span<Wrench> wrenches) const noexcept override {

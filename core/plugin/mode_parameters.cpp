@@ -1,6 +1,5 @@
 #include "withy/core/plugin/mode_parameters.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace withy {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <stdexcept>
 
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/reference/first_order_energy.hpp"

@@ -136,6 +136,17 @@ std::vector<bool> either(std::vector<bool> a, const std::vector<bool>& b) {
   return a;
 }
 
+/// Whether `close` closes the loops, called with the speeds that may change. What is given stays: first with what is
+/// kept, then by itself, then with modes free to move. A gap [m, m/s] that is next to nothing is closed by all.
+template <class Close>
+bool closes(const Model& model, const GivenState& given, const GivenState* kept, std::vector<bool> GivenState::*part,
+            double gap, Close&& close) {
+  constexpr double near_enough = 1e-3;
+  return (kept != nullptr && close(free_speeds(model, either(given.*part, kept->*part), false))) ||
+         close(free_speeds(model, given.*part, false)) || close(free_speeds(model, given.*part, true)) ||
+         (gap <= near_enough && close(free_speeds(model, std::vector<bool>(model.layout().speeds, false), true)));
+}
+
 /// The coordinate or speed that has changed most, in words.
 std::string greatest_change(const Layout& layout, const State& before, const State& after, bool rates) {
   const Slot* most = nullptr;
@@ -170,19 +181,13 @@ std::size_t farthest(const Model& model, const Eigen::VectorXd& gaps) {
 
 Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state,
                   const GivenState* kept) {
-  constexpr double near_enough = 1e-3;  // [m]
   const Layout& layout = model.layout();
   const State before = state;
-  const std::vector<bool> none(layout.speeds, false);
   Assembler assembler(model, equations, state);
   Assembly result;
   const double gap = assembler.gap();
-  bool good = (kept != nullptr &&
-               assembler.close_positions(free_speeds(model, either(given.positions, kept->positions), false))) ||
-              assembler.close_positions(free_speeds(model, given.positions, false)) ||
-              assembler.close_positions(free_speeds(model, given.positions, true)) ||
-              (gap <= near_enough && assembler.close_positions(free_speeds(model, none, true)));
-  if (!good) {
+  if (!closes(model, given, kept, &GivenState::positions, gap,
+              [&](const auto& free) { return assembler.close_positions(free); })) {
     result.loop = farthest(model, assembler.gaps());
     result.fault = "the loop cannot be closed from the initial state: its frames are " + brief(gap) +
                    " m apart there (turns count with the length of the largest flexible body, or of what hinges and "
@@ -201,11 +206,8 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
     return result;
   }
   const double rate = assembler.gap_rate();
-  good = (kept != nullptr && assembler.close_rates(free_speeds(model, either(given.rates, kept->rates), false))) ||
-         assembler.close_rates(free_speeds(model, given.rates, false)) ||
-         assembler.close_rates(free_speeds(model, given.rates, true)) ||
-         (rate <= near_enough && assembler.close_rates(free_speeds(model, none, true)));
-  if (!good) {
+  if (!closes(model, given, kept, &GivenState::rates, rate,
+              [&](const auto& free) { return assembler.close_rates(free); })) {
     result.loop = farthest(model, assembler.gap_rates());
     result.fault = "the loop does not stay closed: the initial speeds part its frames at " + brief(rate) +
                    " m/s, and what `initial` gives and motions prescribe leaves no way; give fewer rates";

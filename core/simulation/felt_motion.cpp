@@ -10,29 +10,30 @@ namespace {
 
 Vector3 vector_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
+/// Calls `meet(slope)` for every field that acts, of mass that moves with a body frame.
+template <class Meet>
+void meet_slopes(const Model& model, const State& state, const FrameMotion& at, Meet&& meet) {
+  static const MassPoint unit{.mass = 1, .second = Matrix3::Zero(), .at = {}};
+  for (const LoadNode& node : model.loads())
+    if (const FieldLoad* field = acting_field(node, state.y)) meet(field->slope(state.time, unit, at));
+}
+
 /// By the place of mass that moves with a body frame: of the field itself, and of its velocity.
 Matrix3 gradient_of(const Model& model, const State& state, const FrameMotion& at) {
-  static const MassPoint unit{.mass = 1, .second = Matrix3::Zero(), .at = {}};
   Matrix3 gradient = Matrix3::Zero();
-  for (const LoadNode& node : model.loads()) {
-    const FieldLoad* field = acting_field(node, state.y);
-    if (field == nullptr) continue;
-    const FieldLoad::Slope slope = field->slope(state.time, unit, at);
+  meet_slopes(model, state, at, [&](const FieldLoad::Slope& slope) {
     gradient += slope.block<3, 3>(3, 3) + slope.block<3, 3>(3, 9) * skew<double>(at.angular_velocity);
-  }
+  });
   return gradient;
 }
 
 /// Of the axes of fields, by what they give velocities across them: Coriolis' acceleration −2 Ω × v.
 Vector3 turning_of(const Model& model, const State& state, const FrameMotion& at) {
-  static const MassPoint unit{.mass = 1, .second = Matrix3::Zero(), .at = {}};
   Vector3 turning = Vector3::Zero();
-  for (const LoadNode& node : model.loads()) {
-    const FieldLoad* field = acting_field(node, state.y);
-    if (field == nullptr) continue;
-    const Matrix3 C = field->slope(state.time, unit, at).block<3, 3>(3, 9);
+  meet_slopes(model, state, at, [&](const FieldLoad::Slope& slope) {
+    const Matrix3 C = slope.block<3, 3>(3, 9);
     turning -= 0.25 * Vector3(C(2, 1) - C(1, 2), C(0, 2) - C(2, 0), C(1, 0) - C(0, 1));
-  }
+  });
   return turning;
 }
 

@@ -2,7 +2,6 @@
 /// Watches that closed loops keep their rank along a run.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -17,15 +17,10 @@ constexpr double most_parts = 4096;
 }  // namespace
 
 StepParts::StepParts(const Model& model, double start, double end) : longest_((end - start) / parts_of_a_run) {
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-    const Slot& slot = model.layout().hinges[h];
-    for (std::size_t i = 0; i < rates.size(); ++i)
-      if (rates[i].angular)
-        turning_.push_back(
-            {model.layout().positions + slot.speed + i,
-             rates[i].coordinate ? static_cast<std::ptrdiff_t>(slot.position + *rates[i].coordinate) : -1});
-  }
+  for (const ModelRate& rate : hinge_rates(model))
+    if (rate.angular)
+      turning_.push_back(
+          {model.layout().positions + rate.speed, rate.position ? static_cast<std::ptrdiff_t>(*rate.position) : -1});
 }
 
 void StepParts::leave_out(const std::function<bool(std::size_t)>& matters) {

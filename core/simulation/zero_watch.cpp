@@ -31,14 +31,8 @@ std::span<const double> speeds(const Model& model, std::span<const double> y) {
 /// Of the coordinates that are integrals of a rate.
 std::vector<ZeroWatch::Moving> ZeroWatch::moving_coordinates(const Model& model) {
   std::vector<Moving> moving;
-  const auto& layout = model.layout();
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-    for (std::size_t i = 0; i < rates.size(); ++i)
-      if (rates[i].coordinate)
-        moving.push_back(
-            {layout.hinges[h].position + *rates[i].coordinate, layout.positions + layout.hinges[h].speed + i});
-  }
+  for (const ModelRate& rate : hinge_rates(model))
+    if (rate.position) moving.push_back({*rate.position, model.layout().positions + rate.speed});
   return moving;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <stdexcept>
 #include <type_traits>
 
 #include "withy/core/model/hinge_rates.hpp"
@@ -171,14 +170,11 @@ Eigen::VectorXd TangentDynamics::stiffness_in_play(double t, std::span<const dou
   const Recursion<double> tree(*model_, build.hinges(), build.bodies([](std::size_t) { return false; }));
   const Eigen::VectorXd sizes = analysis::sizes_of(tree, wrenches(t, y, tree, nullptr));
   double squared = 0;
-  for (std::size_t h = 0; h < model_->hinges().size(); ++h) {
-    std::size_t s = model_->layout().hinges[h].speed;
-    for (const HingeRate& rate : hinge_rates(*model_->hinges()[h].hinge)) {
-      const auto i = static_cast<Eigen::Index>(s++);
-      if (!rate.angular) continue;
-      const double turned = y[model_->layout().positions + static_cast<std::size_t>(i)];
-      squared = std::max({squared, turned * turned, mass[i] > 0 ? typed * sizes[i] / mass[i] : 0.0});
-    }
+  for (const ModelRate& rate : hinge_rates(*model_)) {
+    if (!rate.angular) continue;
+    const auto i = static_cast<Eigen::Index>(rate.speed);
+    const double turned = y[model_->layout().positions + rate.speed];
+    squared = std::max({squared, turned * turned, mass[i] > 0 ? typed * sizes[i] / mass[i] : 0.0});
   }
   return terms + squared * mass.cwiseAbs();
 }

@@ -8,29 +8,22 @@
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/changing_law.hpp"
+#include "withy/core/plugin/effortless_load.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
 #include "withy/loads/control/control_load.hpp"
 
 namespace withy {
 
 /// A controller of one model: what it measures by name, and where it acts. It adds nothing by itself.
-class BoundControl : public BoundLoad, public LoadOutput, public LoadNumbers, public ChangingLaw {
+class BoundControl : public EffortlessLoad, public LoadOutput, public LoadNumbers, public ChangingLaw {
  public:
   /// \throws std::invalid_argument where the ends do not fit the model or the block.
   BoundControl(const Model& model, ControlEnds ends, std::shared_ptr<const ControlBlock> block);
 
-  void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-           std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
-  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
-                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
-    return true;  // `add` adds nothing
-  }
   std::span<const FrameIndex> frames() const override { return frames_; }
   void wrenches(double /*t*/, std::span<const FrameMotion> /*motions*/,
                 std::span<Wrench> wrenches) const noexcept override;
   double end() const override { return block_->end(); }
-  void begin(State& /*state*/) const override {}
   const LoadOutput* output() const override { return this; }
   std::size_t outputs() const override { return block_->outputs(); }
   /// Commands, what the block shows, its states.

@@ -2,7 +2,6 @@
 /// A controller written as a formula of the time and of signals.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "withy/core/plugin/course_of_time.hpp"

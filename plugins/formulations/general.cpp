@@ -1,6 +1,5 @@
 /// \file
 /// A formulation by its two choices: any strain kinematics, any truncation. The other names are presets of it.
-#include <algorithm>
 
 #include "formulation_plugin.hpp"
 #include "withy/core/plugin/default_values.hpp"

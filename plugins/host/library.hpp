@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "withy/core/plugin/registry.hpp"
 #include "withy/plugins/host/manifest.hpp"

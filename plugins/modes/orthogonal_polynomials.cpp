@@ -7,7 +7,6 @@
 /// Values, first and second derivatives (A&S 22.8; P_n^(a,b)′ = ½ (n + a + b + 1) P_{n−1}^(a+1,b+1)) come from the
 /// three-term recurrence (22.7.1), stable on [−1, 1]: 1e-12 for 200 functions. There are 100, since beyond that the
 /// panels of a beam's quadrature, equally long, no longer integrate their products near the ends to 1e-12.
-#include <array>
 #include <cmath>
 
 #include "mode_family_plugin.hpp"

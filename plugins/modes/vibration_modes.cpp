@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "panel_functions.hpp"
 #include "withy/core/plugin/registry.hpp"
