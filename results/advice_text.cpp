@@ -106,7 +106,7 @@ std::string fared(const study::Advice& a, const study::Accuracy& accuracy, const
                                              point_modes(p.point), use_text(accuracy, p.use), p.walk.time, end)
                                : fmt::format("with {}, {} off", point_modes(p.point), use_text(accuracy, p.use));
     case Outcome::too_costly:
-      return fmt::format("with {} and {}, not done when it had cost more than the choice", point_modes(p.point),
+      return fmt::format("with {} and {}, stopped when it had cost more than the choice", point_modes(p.point),
                          integration_text(p.point));
     case Outcome::no_candidate:
       return fmt::format("holds it with {} and {}, which is not among the candidates", point_modes(p.point),
@@ -233,7 +233,8 @@ std::string advice_text(const AdviceReport& report) {
   if (!a.until.empty()) lines.add("measured", a.until);
   if (a.models_tried < a.models)
     lines.add("measured",
-              fmt::format("{} of {} models: the time was over, there may be a cheaper one", a.models_tried, a.models));
+              fmt::format("{} of {} models before the time was over (--seconds gives more): there may be a cheaper one",
+                          a.models_tried, a.models));
   return fmt::format("{}\n\n{}\nin the scene:\n\n{}", question_text(report.question), lines.str(),
                      scene_lines(report.changes));
 }

@@ -110,7 +110,8 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model, double
       e.off > worth_saying ? fmt::format(" that leave this one by up to {} of a range", percent(e.off)) : "";
   out = fmt::format("against {}, estimated by coarse runs{}: {}", e.against, off, out);
   if (!e.at_most.empty())
-    out += fmt::format("; roughly at most that of {}, too little for coarse runs to tell", fmt::join(e.at_most, ", "));
+    out += fmt::format("; the values of {} are rough upper bounds: coarse runs do not resolve them",
+                       fmt::join(e.at_most, ", "));
   if (e.distances.until < e.end)
     out += fmt::format("; up to {:.4g} s, to which the runs compared came", e.distances.until);
   else if (e.end < reached)
@@ -134,10 +135,8 @@ constexpr double rounding_of_energy = 1e-12;
 std::string body_text(const BodyValidity& b, const RunSummary& summary) {
   std::string out =
       b.rate_ratio > 0
-          ? fmt::format("turns at {:.2g} of the lowest frequency it has as it is carried, {:.4g} rad/s", b.rate_ratio,
-                        b.fundamental)
-          : fmt::format("its root does not turn; the lowest frequency it has as it is carried is {:.4g} rad/s",
-                        b.fundamental);
+          ? fmt::format("turns at {:.2g} of its lowest mounted frequency, {:.4g} rad/s", b.rate_ratio, b.fundamental)
+          : fmt::format("its root does not turn; its lowest mounted frequency is {:.4g} rad/s", b.fundamental);
   if (b.load.size() > 0) {
     const std::size_t most = study::greatest_share(b.load);
     out += fmt::format("; {} load {:.2g} of the buckling load, most of it from {}",
@@ -282,7 +281,7 @@ std::string limits_text(const std::vector<study::Indicator>& indicators) {
   const auto passed =
       std::count_if(indicators.begin(), indicators.end(), [](const study::Indicator& i) { return i.use() > 1; });
   if (passed == 0) return "all are kept; nearest is " + how;
-  return fmt::format("{} passed, {}{}; beyond it {}", passed == 1 ? "one is" : fmt::format("{} are", passed),
+  return fmt::format("{} exceeded, {}{}; beyond it {}", passed == 1 ? "one is" : fmt::format("{} are", passed),
                      passed == 1 ? "" : "most of all ", how, first.meaning);
 }
 

@@ -50,7 +50,7 @@ std::optional<State> found_from(Configuration at, const State& start) {
 Jump jump_between(Configuration before, const State& steady_before, const Configuration& here, const State& steady,
                   const std::function<std::optional<Configuration>()>& midway) {
   const Layout& layout = here.layout();
-  const Eigen::VectorXd mass = here.dynamics().mass_diagonal(steady.time, steady.y);
+  const Eigen::VectorXd mass = here.dynamics().mass(steady.time, steady.y).diagonal();
   // Along a line that nothing holds a state may come back elsewhere by the square of the step: much less than it.
   constexpr double of_the_way = 0.1;
   const double enough =

@@ -39,7 +39,7 @@ void add_body(std::vector<Indicator>& all, const Scene& scene, const BodyValidit
   const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
   if (!second_order(own)) {
     all.push_back({"rate of '" + b.name + "' over its fundamental frequency", b.rate_ratio,
-                   rate_limit(own, one_direction(b)), "frequencies of vibration are 1 % wrong"});
+                   rate_limit(own, one_direction(b)), "natural frequencies are 1 % off"});
     add_load(all, node, b, own);
   }
   const std::optional<Bend> bend = greatest_bend(b, summary);

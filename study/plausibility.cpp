@@ -162,8 +162,8 @@ void look_at_servo(const Prepared& prepared, const std::vector<double>& inertia,
   all.push_back(
       {gains.place(), fmt::format("the servo on '{}' drives an inertia of {} alone: damping {} over it makes a pole "
                                   "at about -{}/s, which explicit integrators follow in steps of its "
-                                  "reciprocal; a motor has a rotor: give hinges.{}.reflected_inertia, its inertia "
-                                  "times the square of the gear ratio, or use radau",
+                                  "reciprocal; if a motor drives it, give hinges.{}.reflected_inertia, the inertia "
+                                  "of its rotor times the square of the gear ratio, or use radau",
                                   hinge, brief(h), brief(d), brief(d / h), hinge)});
 }
 

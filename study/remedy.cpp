@@ -122,13 +122,13 @@ std::string stiff_remedy(const Prepared& prepared, const RunSummary& summary) {
   if (summary.final.y.size() == prepared.equations->size() && !too_stiff(prepared, summary.final))
     if (const std::optional<FastCourse> course = fast_course(prepared, summary.final))
       return fmt::format(
-          " What to do: give {} {} the time that is meant, in seconds; where it is as fast as that indeed, what it "
-          "does "
-          "in the mean; or the run an earlier end (time.end).",
+          " What to do: give {} {} the time that is meant, in seconds; if it really is that fast, replace it by its "
+          "mean "
+          "effect; or let the run end earlier (time.end).",
           course->of_motion ? "motion" : "load",
           placed_name(prepared, course->of_motion ? "motions" : "loads", course->name));
-  return " What to do: run it with --integrator radau, whose steps no fast motion limits; or slow down what is named "
-         "above: less damping or stiffness, or the inertia that it lacks (a motor has a rotor).";
+  return " What to do: use --integrator radau, whose steps are not limited by fast motions; or slow down what is named "
+         "above: less damping or stiffness, or more inertia (of a motor, that of its rotor).";
 }
 
 const char* const shorter_steps =
@@ -215,12 +215,13 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
     if (std::string text = limit_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::step_underflow)
     if (const Value* least = least_step(prepared.scene, summary.reached))
-      return fmt::format(" What to do: let min_step be smaller: it is {:g} s, and time could be told apart farther.",
-                         least->number());
+      return fmt::format(
+          " What to do: make min_step smaller: it is {:g} s, and time is resolved more finely than that.",
+          least->number());
   if (bends && leaves_something_out(terms))
-    return std::string(" What to do: run it with --formulation quadratic, which leaves out less") +
+    return std::string(" What to do: use --formulation quadratic, which neglects less") +
            (can_be_exact(prepared.model()) ? ", or exact where bodies bend by more than a tenth of their length" : "") +
-           "; if that ends the same way it is the model and not the formulation.";
+           "; if the run then stops in the same way, the cause is the model and not the formulation.";
   if (summary.status == RunStatus::diverged && bends)
     if (std::string text = bent_remedy(prepared, summary); !text.empty()) return text;
   if (summary.status == RunStatus::singular)

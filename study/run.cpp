@@ -195,8 +195,8 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
   if (!(summary.final.time > prepared.scene.initial.time)) return "not estimated: no motion of this run can be trusted";
   if (prepared.scene.formulation->terms().strain == StrainOrder::exact && !beyond)
     return "nothing is left out: kinematics is exact and nothing is truncated";
-  if (beyond && !beyond->highest) return "not estimated: it was not asked for";
-  std::string third = "terms of third order in the deflection are left out";
+  if (beyond && !beyond->highest) return "not estimated: `--estimate always` asks for it";
+  std::string third = "terms of third order in the deflection are neglected";
   // What second-order kinematics was measured to be off by at a state (ThirdOrder). What a motion is off by after a
   // while is more, for frequencies are wrong by that and phases run apart.
   if (!summary.peak_deflection_ratio.empty()) {
@@ -205,8 +205,7 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
       if (const auto bend = greatest_bend(body, summary); bend && bend->size() > most.size()) most = *bend;
     const double share = 100 * third_order_share(most);
     third += fmt::format(
-        ", about {} % of it at an instant where {}; that is no error of the run, which grows with time, to many times "
-        "as much",
+        ", about {} % of it at an instant where {}; the error of the run grows with time and may be many times larger",
         share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share),
         most.bent() && most.by_angle() ? fmt::format("a section of a bent body is turned by {:.2g} rad", most.angle)
                                        : fmt::format("it is {:.2g} of a body's length", most.deflection));
@@ -224,8 +223,7 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
 MoreModesOutcome more_modes(const Prepared& prepared, Registry& registry, const RunSummary& summary,
                             const RunSettings& settings, bool comparable) {
   if (!settings.look_beyond || !can_be_refined(prepared.scene)) return {};
-  if (settings.estimate != Estimate::always)
-    return {{}, "it was not asked for; `--estimate always` compares with one more of each"};
+  if (settings.estimate != Estimate::always) return {{}, "`--estimate always` compares with one more of each"};
   if (has_switches(prepared.model()))
     return {{}, own_instants(prepared.model()) + "; two runs that are compared need common instants"};
   if (!comparable) return {{}, "no motion of this run can be compared"};

@@ -142,7 +142,7 @@ class Balance {
     rows_ = columns_ = Eigen::VectorXd::Ones(J_.rows());
     if (!finite() || J_.size() == 0) return;
     const State& state = configuration_.state();
-    const Eigen::VectorXd mass = configuration_.dynamics().mass_diagonal(state.time, state.y)(motions_.free());
+    const Eigen::VectorXd mass = configuration_.dynamics().mass(state.time, state.y).diagonal()(motions_.free());
     rows_.head(m_) = mass.cwiseAbs().cwiseSqrt();
     for (double& root : rows_.head(m_)) root = root > 0 ? root : 1.0;
     columns_.head(m_) = rows_.head(m_).cwiseInverse();

@@ -2,7 +2,6 @@
 /// A periodic motion between the instants at which it was found: the trigonometric polynomial through them.
 #pragma once
 
-
 #include "withy/core/analysis/turn.hpp"
 
 namespace withy {

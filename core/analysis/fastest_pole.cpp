@@ -247,8 +247,8 @@ std::string describe(const FastestPole& pole, const Layout& layout) {
   if (!pole.cause.empty()) text += pole.cause + " on ";
   text += layout.speed_names[pole.speed];
   if (pole.inertia < little * pole.alone)
-    text += ", behind which there is little inertia (" + brief(pole.inertia) + " where the others stay " +
-            brief(pole.alone) + ")";
+    text += ", with little inertia behind it (" + brief(pole.inertia) + "; " + brief(pole.alone) +
+            " if the other coordinates are held)";
   return text;
 }
 

@@ -36,7 +36,8 @@ FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, co
 /// little of it Re λ falls most, with λ by first-order perturbation. "inertia and weight" where it is no other's.
 FastestPole growing_pole(const TangentDynamics& dynamics, const State& state, const Held& held);
 
-/// In words: "-26911/s: damping of load 'servo' on shoulder.0, behind which there is little inertia (0.011 of 5.3)".
+/// In words: "-26911/s: damping of load 'servo' on shoulder.0, with little inertia behind it (0.011; 5.3 if the other
+/// coordinates are held)".
 std::string describe(const FastestPole& pole, const Layout& layout);
 
 }  // namespace withy

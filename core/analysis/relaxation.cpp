@@ -25,7 +25,7 @@ class Free {
       : dynamics_(dynamics),
         free_(free),
         rest_(dynamics.steady_accelerations(state.time)),
-        unit_(unit_inertias(dynamics.mass_diagonal(state.time, state.y)(free))) {}
+        unit_(unit_inertias(dynamics.mass(state.time, state.y).diagonal()(free))) {}
   /// \returns whether all is finite.
   bool look(const State& state) {
     const Stiffness t = dynamics_.stiffness(state.time, state.y, rest_);

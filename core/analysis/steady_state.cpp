@@ -35,7 +35,7 @@ class Newton {
         n_(static_cast<Eigen::Index>(held.size())),
         state_(start),
         rest_(dynamics.steady_accelerations(start.time)),
-        mass_(dynamics.mass_diagonal(state_.time, state_.y)),
+        mass_(dynamics.mass(state_.time, state_.y).diagonal()),
         scaled_(mass_(free_)) {}
 
   SteadyState solve() {
@@ -213,14 +213,13 @@ Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& stat
   Eigen::VectorXd a = dynamics.steady_accelerations(state.time);
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (free.empty()) return a;
-  const Tangents t = dynamics.tangents(state.time, state.y, a);
-  const Eigen::MatrixXd M = t.mass(free, free);
+  const Eigen::MatrixXd M = dynamics.mass(state.time, state.y)(free, free);
+  const Eigen::VectorXd residual = dynamics.residual(state.time, state.y, a);
   // No factors of what is not finite say anything of the masses.
-  if (!M.allFinite() || !t.residual.allFinite())
-    throw std::domain_error("the derivatives at this state are not finite");
+  if (!M.allFinite() || !residual.allFinite()) throw std::domain_error("the derivatives at this state are not finite");
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
   if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
-  a(free) = -lu.solve(t.residual(free));
+  a(free) = -lu.solve(residual(free));
   return a;
 }
 

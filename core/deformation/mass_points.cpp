@@ -1,6 +1,5 @@
 #include "withy/core/deformation/mass_points.hpp"
 
-
 #include "withy/core/deformation/rod_table.hpp"
 #include "withy/core/model/switched_load.hpp"
 

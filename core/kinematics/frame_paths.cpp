@@ -1,6 +1,5 @@
 #include "withy/core/kinematics/frame_paths.hpp"
 
-
 #include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/kinematics/frame_pass.hpp"
 #include "withy/core/shape/section_fields.hpp"

@@ -8,16 +8,8 @@
 namespace withy {
 
 HingeAngles::HingeAngles(const Model& model) {
-  const Layout& layout = model.layout();
-  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
-    const Slot& slot = layout.hinges[h];
-    std::size_t rate = layout.positions + slot.speed;
-    for (const HingeRate& of : hinge_rates(*model.hinges()[h].hinge)) {
-      if (of.angular)
-        angles_.push_back({rate, of.coordinate ? std::optional(slot.position + *of.coordinate) : std::nullopt});
-      ++rate;
-    }
-  }
+  for (const ModelRate& rate : hinge_rates(model))
+    if (rate.angular) angles_.push_back({model.layout().positions + rate.speed, rate.position});
 }
 
 double HingeAngles::turned(std::span<const double> before, std::span<const double> after,

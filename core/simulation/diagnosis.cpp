@@ -240,21 +240,22 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
     between = " between t = " + brief(h.change->before) + " and " + brief(h.change->after) + " s";
   std::string text;
   if (h.became_singular()) {
-    text = "The mass matrix of this formulation became singular, so that a motion has no inertia, as in no structure: ";
+    text = "The mass matrix of this formulation became singular: some motion has no inertia, which no structure has; ";
     text += "det M came to zero" + between;
   } else if (near) {
     text =
-        "The mass matrix of this formulation comes near to being singular, so that a motion has hardly any inertia, ";
-    text += "as in no structure: " + brief(h.least_share) + " of what it had at the start";
+        "The mass matrix of this formulation is nearly singular: some motion has hardly any inertia, which no "
+        "structure ";
+    text += "has; it is " + brief(h.least_share) + " of what it was at the start";
   } else if (h.change) {
-    text = "The mass matrix of this formulation became singular on the way and then indefinite, so that a motion has ";
-    text += "negative inertia, as in no structure: det M changed sign" + between;
+    text = "The mass matrix of this formulation became singular on the way and then indefinite: some motion has ";
+    text += "negative inertia, which no structure has; det M changed sign" + between;
   } else if (h.lost_definiteness()) {
     text = "The mass matrix of this formulation lost its positive definiteness: det M is " +
            sign_text(h.end.determinant_sign) + ", at the start it was " + sign_text(h.start.determinant_sign);
   } else if (h.has_negative_inertia()) {
-    text = "The mass matrix of this formulation is indefinite, as it was at the start, so that a motion has negative ";
-    text += "inertia, as in no structure: det M is " + sign_text(h.end.determinant_sign);
+    text = "The mass matrix of this formulation is indefinite, as it was at the start: some motion has negative ";
+    text += "inertia, which no structure has; det M is " + sign_text(h.end.determinant_sign);
   } else {
     text = std::string("The mass matrix is ") + (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
            " as it was at the start: det M is " + sign_text(h.end.determinant_sign);

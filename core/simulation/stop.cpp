@@ -61,10 +61,8 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
                 false};
       return {RunStatus::singular, "the mass matrix cannot be solved" + where};
     case StepResult::Outcome::step_underflow:
-      return {
-          RunStatus::step_underflow,
-          "the accuracy asked for needs steps below the resolution of time, or below the least that the integrator is "
-          "told"};
+      return {RunStatus::step_underflow,
+              "the accuracy asked for needs steps below the resolution of time, or below the integrator's 'min_step'"};
     case StepResult::Outcome::ok:
       break;
   }

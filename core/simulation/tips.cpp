@@ -1,6 +1,5 @@
 #include "withy/core/simulation/tips.hpp"
 
-
 #include "withy/core/plugin/measured_place.hpp"
 
 namespace withy {

@@ -244,11 +244,11 @@ Stiffness TangentDynamics::stiffness(double t, std::span<const double> y, const 
           std::move(result.rate_by_position), std::move(result.rate_by_state), std::move(result.in_play)};
 }
 
-Eigen::VectorXd TangentDynamics::mass_diagonal(double t, std::span<const double> y) const {
+Eigen::MatrixXd TangentDynamics::mass(double t, std::span<const double> y) const {
   const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
   Eigen::MatrixXd mass(n, n);
   differentiate(t, y, Eigen::VectorXd::Zero(n), 2 * model_->layout().speeds, mass, nullptr);
-  return mass.diagonal();
+  return mass;
 }
 
 Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const {

@@ -87,8 +87,8 @@ class TangentDynamics {
   /// g of Tangents: rates of the continuous states of loads.
   [[nodiscard]] Eigen::VectorXd rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   [[nodiscard]] Tangents tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
-  /// M_ii, one a speed.
-  [[nodiscard]] Eigen::VectorXd mass_diagonal(double t, std::span<const double> y) const;
+  /// M alone, at a third of the cost of all tangents.
+  [[nodiscard]] Eigen::MatrixXd mass(double t, std::span<const double> y) const;
   /// What depends on speeds and accelerations left out, at a third of the cost.
   [[nodiscard]] Stiffness stiffness(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   /// In the formulation's strain kinematics without truncation, as results show them.

@@ -73,7 +73,7 @@ PlacedTree compile_placed_tree(const Model& model, bool planar) {
   if (const auto normal = planar ? compilation::plane_normal(tree) : std::nullopt) {
     tree.planar = true;
     tree.plane.R = compilation::basis_near_x(*normal);
-    tree.savings.insert(tree.savings.begin(), "the motion is planar: three numbers a twist instead of six");
+    tree.savings.insert(tree.savings.begin(), "the motion is planar: three velocity components instead of six");
   }
   compilation::align(tree);
   if (tree.planar) {

@@ -8,7 +8,6 @@
 /// respect to the loaded mass, ∫ φ_i φ_j dξ + μ φ_i φ_j + ς (φ_i φ_j′ + φ_i′ φ_j) + ι φ_i′ φ_j′ (at ξ = 1) = 0, i ≠ j.
 #pragma once
 
-
 #include "uniform_beam.hpp"
 
 namespace withy {

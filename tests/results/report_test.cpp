@@ -43,8 +43,8 @@ TEST(CertificateText, AValueIsSeenOnItsSideOfItsLimit) {
   EXPECT_EQ(told(0.12896, 0.129), "all are kept; nearest is rate: 0.129, limit 0.129");
   EXPECT_EQ(told(0.0812, 0.1), "all are kept; nearest is rate: 0.081, limit 0.1");
   EXPECT_EQ(told(0.1, 0.1), "all are kept; nearest is rate: 0.1, limit 0.1");
-  EXPECT_EQ(told(0.1002, 0.1), "one is passed, rate: 0.1002, limit 0.1; beyond it it is wrong");
-  EXPECT_EQ(told(0.81, 0.129), "one is passed, rate: 0.81, limit 0.129; beyond it it is wrong");
+  EXPECT_EQ(told(0.1002, 0.1), "one is exceeded, rate: 0.1002, limit 0.1; beyond it it is wrong");
+  EXPECT_EQ(told(0.81, 0.129), "one is exceeded, rate: 0.81, limit 0.129; beyond it it is wrong");
 }
 
 std::string certificate_of(const study::Certificate& c) {

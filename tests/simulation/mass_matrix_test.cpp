@@ -88,7 +88,7 @@ TEST(MassMatrix, that_was_never_definite_is_not_acquitted) {
     h.start = h.end = conditioning(h.last);
     return explain(stop, 1, &h, layout);
   };
-  EXPECT_THAT(told({1, 0.5, 0, -0.1}), HasSubstr("as it was at the start, so that a motion has negative inertia"));
+  EXPECT_THAT(told({1, 0.5, 0, -0.1}), HasSubstr("as it was at the start: some motion has negative inertia"));
   // An indefinite symmetric part says little where the determinant is positive, but M is no structure's either.
   EXPECT_THAT(told({1, 3, 0, 1}), HasSubstr("The mass matrix is indefinite as it was at the start"));
   EXPECT_THAT(told({1, 0.5, 0.5, 1}), HasSubstr("The mass matrix is not the reason"));
