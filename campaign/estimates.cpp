@@ -153,6 +153,7 @@ MorrisMeasure morris_measure(const std::vector<double>& effects) {
   std::vector<double> sizes;
   for (const double e : effects) sizes.push_back(std::abs(e));
   m.mean_size = mean_of(sizes);
+  if (std::isfinite(m.mean_size.low)) m.mean_size.low = std::max(m.mean_size.low, 0.0);  // no mean of sizes is less
   return m;
 }
 

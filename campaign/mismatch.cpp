@@ -1,9 +1,13 @@
 #include "withy/campaign/mismatch.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <thread>
+
+#include "withy/scene/units.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -40,6 +44,8 @@ std::optional<double> neighbours(const MeasuredColumn& column, const std::vector
 
 }  // namespace
 
+double root_mean_square(const VectorXd& r) { return r.norm() / std::sqrt(static_cast<double>(r.size())); }
+
 Mismatch::Mismatch(const study::Prepared& scene, Registry& registry, const TuneQuestion& question,
                    std::vector<TunedValue> tuned_values, Measured measured)
     : tuned(std::move(tuned_values)),
@@ -54,6 +60,14 @@ std::vector<double> Mismatch::values(const VectorXd& z) const {
   std::vector<double> x;
   for (std::size_t i = 0; i < tuned.size(); ++i) x.push_back(tuned[i].value(z[static_cast<Index>(i)]));
   return x;
+}
+
+std::vector<std::string> Mismatch::settings(const VectorXd& z) const {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < tuned.size(); ++i)
+    all.push_back(fmt::format("{}={}{}{}", tuned[i].path, to_digits(tuned[i].value(z[static_cast<Index>(i)]), 9),
+                              tuned[i].unit.empty() ? "" : " ", tuned[i].unit));
+  return all;
 }
 
 std::vector<MatchedRun> Mismatch::run(const std::vector<std::vector<double>>& points) {
@@ -78,8 +92,11 @@ VectorXd Mismatch::residuals(const MatchedRun& run) const {
 
 bool Mismatch::evaluate(const VectorXd& z, VectorXd& r) {
   const MatchedRun made = run({values(z)}).front();
-  if (made.ok()) r = residuals(made);
-  return made.ok();
+  if (!made.ok()) return false;
+  r = residuals(made);
+  if (const double residual = root_mean_square(r); !nearest || residual < nearest->residual)
+    nearest = NearestRun{settings(z), residual};
+  return true;
 }
 
 bool Mismatch::derivatives(const VectorXd& z, const std::vector<std::size_t>& of, double step, MatrixXd& J) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,13 @@ class Mismatch {
   const Measured data;
   std::size_t runs = 0, failed = 0;
   std::string last_failure;
+  /// What was nearest to the data of all that evaluate() ran; empty where none of its runs came to an end.
+  std::optional<NearestRun> nearest;
 
  private:
   bool derivatives(const Eigen::VectorXd& z, const std::vector<std::size_t>& of, double step, Eigen::MatrixXd& J);
   [[nodiscard]] Eigen::VectorXd moved(Eigen::VectorXd z, std::size_t i, double by) const;
+  [[nodiscard]] std::vector<std::string> settings(const Eigen::VectorXd& z) const;
 
   const study::Prepared& scene_;
   Registry& registry_;
@@ -50,6 +54,9 @@ class Mismatch {
   std::size_t jobs_;
   double step_;
 };
+
+/// Root of the mean of the squares.
+double root_mean_square(const Eigen::VectorXd& r);
 
 /// How far two runs are from each column: of the scene as it is, which may have failed, and of the fitted one.
 std::vector<ColumnFit> column_fits(const Measured& data, const MatchedRun& start, const MatchedRun& end);

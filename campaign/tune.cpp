@@ -21,8 +21,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Indices = std::vector<std::size_t>;
 
-double root_mean_square(const VectorXd& r) { return r.norm() / std::sqrt(static_cast<double>(r.size())); }
-
 /// One call of `tune` after its input has been read.
 class TuneSearch {
  public:
@@ -40,6 +38,7 @@ class TuneSearch {
     else
       result_.trouble = "the scene with its own values has no run to begin with: " + start.failure;
     result_.interrupted = m_.stopped();
+    if (result_.interrupted) result_.nearest = m_.nearest;
     if (result_.trouble.empty() && !result_.interrupted) report(start);
     result_.runs = m_.runs, result_.failed = m_.failed, result_.last_failure = m_.last_failure;
     return std::move(result_);

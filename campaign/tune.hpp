@@ -58,6 +58,12 @@ struct SearchEnd {
   std::string reason;
 };
 
+/// A run on the way of a search.
+struct NearestRun {
+  std::vector<std::string> settings;  ///< of the parameters, as `--set` takes them: "loads.spring.stiffness=20 N/m"
+  double residual = 0;                ///< root of the mean square of weighted residuals
+};
+
 struct TuneResult {
   std::vector<FittedValue> parameters;
   std::vector<std::vector<double>> correlation;  ///< of the fitted ones, in their order
@@ -71,7 +77,8 @@ struct TuneResult {
   std::size_t runs = 0, failed = 0;
   std::string last_failure;
   bool interrupted = false;
-  std::string trouble;  ///< why there is no fit; empty where there is
+  std::optional<NearestRun> nearest;  ///< of an interrupted search the best that it had come to
+  std::string trouble;                ///< why there is no fit; empty where there is
 
   [[nodiscard]] bool converged() const { return trouble.empty() && !starts.empty() && starts.front().converged; }
   [[nodiscard]] std::vector<double> values() const;

@@ -18,6 +18,8 @@ nlohmann::ordered_json tune_json(const TuneResult& result);
 std::string tune_json_line(const TuneResult& result);
 /// Parameters, residuals, what is not determined, how the search went.
 std::string tune_text(const TuneResult& result, const std::string& title);
+/// What an interrupted search had come to, with the values that `--set` takes, to go on from; empty where no run ended.
+std::string interrupted_text(const TuneResult& result);
 /// A line a time: of each column what was measured, the scene's own run and the fitted one.
 std::string tune_csv(const TuneResult& result);
 /// A panel a column over time: dots are measured, lines the scene's own run and the fitted one.

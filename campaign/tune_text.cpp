@@ -116,6 +116,16 @@ std::string search_text(const TuneResult& result) {
 
 }  // namespace
 
+std::string interrupted_text(const TuneResult& result) {
+  if (!result.nearest) return {};
+  std::string text = fmt::format("nearest to the data of {} runs, with a weighted residual of {:.4g}", result.runs,
+                                 result.nearest->residual);
+  if (result.before > 0) text += fmt::format(" ({:.4g} with the scene's values)", result.before);
+  text += ", came";
+  for (const std::string& setting : result.nearest->settings) text += fmt::format(" --set '{}'", setting);
+  return text;
+}
+
 std::string tune_text(const TuneResult& result, const std::string& title) {
   const Measured& data = result.data;
   std::string text = fmt::format("{}: {} values of {} column{} in {}, t = {:g} to {:g} s\n\n", title, data.count(),

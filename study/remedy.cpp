@@ -156,7 +156,7 @@ std::string bent_remedy(const Prepared& prepared, const RunSummary& summary) {
         "keep bodies from bending so far, by stiffness or by smaller loads.",
         most);
   return fmt::format(
-      " What to do: run it with --formulation exact, which no deflection limits: bodies were bent by {:.2g} of their "
+      " What to do: use --formulation exact, which no deflection limits: bodies were bent by {:.2g} of their "
       "length, and beyond a tenth no other formulation holds. If that ends the same way the motion itself grows, or "
       "bodies may bend as far as that (limits.deflection).",
       most);
@@ -232,7 +232,7 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
     return " What to do: look at what acts at that time: a load that grows without end, a stop that is too stiff, a "
            "'rtol' below what the numbers hold.";
   return std::string(
-             " What to do: run it with a tenth of 'rtol' or of the step. If it ends at the same time the motion "
+             " What to do: use a tenth of 'rtol' or of the step. If it ends at the same time the motion "
              "itself grows: look at the scene's loads, gains and stiffness (withy check") +
          (bends && terms.strain != StrainOrder::exact && can_be_exact(prepared.model())
               ? "; --formulation exact for large deflections)."

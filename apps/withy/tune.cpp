@@ -26,7 +26,10 @@ ExitStatus tune(const TuneArguments& arguments) {
   campaign::TuneQuestion question = arguments.question;
   question.control = study_control("tune, starts");
   const campaign::TuneResult result = campaign::tune(engine.prepared(), engine.registry(), question);
-  if (result.interrupted) return ExitStatus::interrupted;
+  if (result.interrupted) {
+    if (const std::string text = campaign::interrupted_text(result); !text.empty()) complain(title + ": " + text);
+    return ExitStatus::interrupted;
+  }
   if (folder != nullptr) write_tune(folder->path(), result, title, arguments.question.data);
   if (arguments.json) print(json_text(tune_json(result)));
   if (!result.trouble.empty()) {

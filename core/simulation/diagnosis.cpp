@@ -198,6 +198,22 @@ std::string brief(double x) {
   return {text, end.ptr};
 }
 
+namespace {
+
+/// To four digits, down or up; a number of four digits, but for rounding, stays.
+double rounded(double x, double (*way)(double)) {
+  if (x == 0 || !std::isfinite(x)) return x;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(x))) - 3), units = x / unit;
+  const double nearest = std::round(units);
+  return (std::abs(units - nearest) < 1e-9 * std::abs(nearest) ? nearest : way(units)) * unit;
+}
+
+}  // namespace
+
+std::string brief_interval(double from, double to) {
+  return "between t = " + brief(rounded(from, &std::floor)) + " and " + brief(rounded(to, &std::ceil)) + " s";
+}
+
 // A condition of 1e13 leaves three digits of the accelerations.
 bool MassMatrixHistory::became_singular() const { return end.condition > std::max(1e13, 100 * start.condition); }
 
@@ -237,7 +253,7 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
   const bool negative = h.end.smallest_eigenvalue < 0 && !h.became_singular() && !near;
   std::string between;
   if (h.change && brief(h.change->before) != brief(h.change->after))
-    between = " between t = " + brief(h.change->before) + " and " + brief(h.change->after) + " s";
+    between = ' ' + brief_interval(h.change->before, h.change->after);
   std::string text;
   if (h.became_singular()) {
     text = "The mass matrix of this formulation became singular: some motion has no inertia, which no structure has; ";

@@ -98,5 +98,8 @@ std::string owners_of(const Layout& layout, std::span<const double> unit_vector)
 
 /// Short decimal text of a number, as "%.4g" without a locale.
 std::string brief(double x);
+/// "between t = 0.4853 and 0.4856 s": as short, and rounded outward, so that what is between the two times is between
+/// those that are told. \param from before `to` [s]
+std::string brief_interval(double from, double to);
 
 }  // namespace withy

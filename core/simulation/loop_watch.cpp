@@ -92,9 +92,10 @@ std::string LoopWatch::fault(const Stepper& stepper) {
   const double before = last_.time, kept = kept_through(stepper, state);
   last_ = state;
   if (kept < state.time)
-    return "the equations that close the loops lose rank between t = " + brief(kept) + " and " +
-           brief(std::min(state.time, kept + std::ldexp(state.time - before, -static_cast<int>(most_halvings)))) +
-           " s: there the loops can move on in more than one way, and no equation of motion says which (a singular "
+    return "the equations that close the loops lose rank " +
+           brief_interval(
+               kept, std::min(state.time, kept + std::ldexp(state.time - before, -static_cast<int>(most_halvings)))) +
+           ": there the loops can move on in more than one way, and no equation of motion says which (a singular "
            "configuration, as where links of a four-bar lie in one line)";
   if (begins_singular_)
     return "the run begins in a singular configuration of the loops, as where links of a four-bar lie in one line: "

@@ -84,6 +84,12 @@ TEST(Morris, MeasuresOfEffects) {
   EXPECT_NEAR(m.deviation, std::sqrt(26.0 / 3), 1e-14);
 }
 
+TEST(Morris, TheIntervalOfAMeanOfSizesDoesNotBeginBelowZero) {
+  const Estimate of = morris_measure({0.1, -4}).mean_size;
+  EXPECT_EQ(of.low, 0);
+  EXPECT_GT(of.high, of.value);
+}
+
 TEST(Morris, OfOneEffectThereIsNoInterval) {
   const Estimate one = morris_measure({-3}).mean_size;
   EXPECT_DOUBLE_EQ(one.value, 3);

@@ -280,6 +280,33 @@ TEST(Tune, SaysThatAModelLacksSomething) {
   EXPECT_GT(*result.columns[0].correlation, 0.8);
 }
 
+// Whoever interrupts a long search goes on from where it was: with the values told the scene has the residual told.
+TEST(Tune, AnInterruptedSearchTellsTheNearestRun) {
+  const TuneFolder folder;
+  folder.measure({}, 1e-4, 3);
+  TuneQuestion question;
+  question.parameters = three;
+  question.jobs = 1;
+  int asked = 0;
+  question.control.interrupted = [&] { return ++asked > 20000; };
+  const TuneResult result = folder.tuned(question);
+  ASSERT_TRUE(result.interrupted && result.nearest) << asked;
+  EXPECT_LT(result.nearest->residual, 0.5 * result.before);
+  SceneValues values = folder.prepared().values;
+  std::string told = "came";
+  for (const std::string& setting : result.nearest->settings) {
+    const std::size_t at = setting.find('=');
+    values.set(setting.substr(0, at), Value(setting.substr(at + 1)), "the test");
+    told += " --set '" + setting + "'";
+  }
+  EXPECT_THAT(interrupted_text(result), HasSubstr(told));
+  const study::Prepared there = study::prepare(std::move(values), test::plugins());
+  question.data = (folder / "data.csv").string();
+  question.control.interrupted = [] { return true; };
+  // Values are told with nine digits.
+  EXPECT_NEAR(tune(there, test::plugins(), question).before, result.nearest->residual, 1e-6 * result.nearest->residual);
+}
+
 TEST(Tune, StopsAtBoundsAndFindsTheLowestOfManyMinima) {
   const TuneFolder folder;
   folder.measure({}, 1e-3, 1);

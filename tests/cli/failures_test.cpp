@@ -149,7 +149,7 @@ TEST(Failures, ALeastStepThatIsTooGreatIsNamed) {
   const Folder folder;
   const Finished f = withy(folder, {"run", "scenes/pendulum.yaml", "--set", "integrator.min_step=0.5", "--out", "out"});
   EXPECT_EQ(f.status, 1);
-  EXPECT_THAT(f.err, HasSubstr("let min_step be smaller: it is 0.5 s"));
+  EXPECT_THAT(f.err, HasSubstr("make min_step smaller: it is 0.5 s"));
 }
 
 TEST(Failures, AFullDiskIsAnErrorWhereverItIsMet) {

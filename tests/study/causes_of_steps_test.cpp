@@ -40,7 +40,7 @@ loads: {drag: {type: hinge-spring, hinge: pin, stiffness: 1, damping: 1500}}
   EXPECT_NEAR(number_after(s.message, "its fastest motion is "), -1.5e12, 1e9) << s.message;
   EXPECT_NEAR(number_after(s.message, "of which the run would need about "), 9e11, 0.5e11) << s.message;
   EXPECT_THAT(s.message, HasSubstr("damping of load 'drag' on pin"));
-  EXPECT_THAT(s.message, HasSubstr("What to do: run it with --integrator radau"));
+  EXPECT_THAT(s.message, HasSubstr("What to do: use --integrator radau"));
   // What it advises helps, and `check` says so beforehand.
   SceneValues values = SceneValues::parse("format: withy/1\n" + scene, "planted.yaml");
   const std::vector<Remark> remarks = implausible(prepare(values, plugins()), plugins());
@@ -335,7 +335,7 @@ TEST(Causes, StepsThatAreShortEnoughAreNoCause) {
   const RunSummary s = outcome_of(values.choose_formulation("inconsistent", "the test"));
   EXPECT_EQ(s.status, RunStatus::diverged);
   EXPECT_THAT(s.message, Not(HasSubstr("too long")));
-  EXPECT_THAT(s.message, HasSubstr("What to do: run it with --formulation quadratic"));
+  EXPECT_THAT(s.message, HasSubstr("What to do: use --formulation quadratic"));
 }
 
 }  // namespace

@@ -184,7 +184,7 @@ gravity: [0, -9.81, 0]
   EXPECT_EQ(outcome_of(allowed.set("limits.deflection", Value(3.0), "the test")).status, RunStatus::completed);
   const RunSummary quadratic = outcome_of(values.choose_formulation("quadratic", "the test"));
   EXPECT_EQ(quadratic.status, RunStatus::diverged);
-  EXPECT_THAT(quadratic.message, HasSubstr("What to do: run it with --formulation exact"));
+  EXPECT_THAT(quadratic.message, HasSubstr("What to do: use --formulation exact"));
 }
 
 TEST(Causes, AMassMatrixThatTurnsIndefinite) {

@@ -104,8 +104,7 @@ def sweep(plan: Path, executor: concurrent.futures.Executor | None = None, *, ou
             ``mpi4py.futures.MPIPoolExecutor()``. Workers read plan and store by the same paths. None: threads here.
         out: folder of the store, on a file system that all workers share.
         jobs: threads of each task; 0: one, and without an executor one a core.
-        parts: tasks that the executor gets, case i in part i modulo ``parts``; 64 where left out. A worker reads the
-            whole store at the begin of each.
+        parts: tasks that the executor gets, case i in part i modulo ``parts``; 64 where left out.
         plugins: folders with plugins of your own.
         force: replace another sweep that the folder holds.
         progress: called with the cases done and all cases.
