@@ -15,8 +15,7 @@ using testing::Not;
 
 /// What is found in two formulations at five lengths, if the user interrupts when `done` values are told.
 ModesFound found_after(int done, ModesQuestion& question) {
-  const Prepared prepared =
-      prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml"), test::plugins());
+  const Prepared prepared = prepare(scene("two-link-slew"), test::plugins());
   question.formulations = {"quadratic", "linear"};
   question.sweep = parse_sweep("bodies.link1.length=0.8:1.2:5", "sweep");
   question.holding.locked = {"shoulder", "elbow"};
