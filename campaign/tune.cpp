@@ -51,26 +51,40 @@ class TuneSearch {
       result_.trouble = "the data depend on none of the parameters";
       return;
     }
+    constexpr int most_rounds = 2;
+    for (int round = 0; round < most_rounds; ++round) {
+      const Indices known = active_;
+      if (!search_from_all()) return;
+      look_again();
+      // What the scene's own values hide, as a mass at rest, its end may tell; then no other start has looked for it.
+      if (question_.starts == 1 || std::includes(known.begin(), known.end(), active_.begin(), active_.end())) return;
+    }
+  }
+
+  /// The first start is the best that is known. \returns whether there is an end to go on from
+  bool search_from_all() {
     const std::vector<VectorXd> others = promising();
     VectorXd best;
     double least = std::numeric_limits<double>::infinity();
+    result_.starts.clear();
     for (std::size_t k = 0; k <= others.size() && !m_.stopped(); ++k) {
       SearchEnd& end = result_.starts.emplace_back();
       const VectorXd z = from(k == 0 ? z_ : others[k - 1], end);
+      if (k == 0) end.from = m_.values(VectorXd::Zero(z_.size()));
       question_.control.tell(static_cast<double>(k + 1), static_cast<double>(question_.starts));
       if (!(end.residual < least)) continue;
       least = end.residual;
       best = z;
     }
-    if (m_.stopped()) return;
+    if (m_.stopped()) return false;
     if (best.size() == 0) {
       result_.trouble = "no start of the search has a run: " + m_.last_failure;
-      return;
+      return false;
     }
     std::stable_sort(result_.starts.begin(), result_.starts.end(),
                      [](const SearchEnd& a, const SearchEnd& b) { return a.residual < b.residual; });
     z_ = best;
-    look_again();
+    return true;
   }
 
   /// Where the end tells more or fewer parameters than the start did, the search goes on from there with these.
@@ -200,11 +214,11 @@ double relative_slope(const TunedValue& t, double z) {
 
 /// Values with the digits that a scene is written with.
 void TuneSearch::add_parameters() {
-  constexpr double near = 1e-3;
   for (std::size_t i = 0; i < m_.tuned.size(); ++i) {
     const double z = z_[static_cast<Index>(i)];
     const TunedValue& t = m_.tuned[i];
     FittedValue fitted{t, FittedValue::State::fitted, to_digits(t.value(z), 9), {}, {}};
+    const double near = 1e-3 * std::min(1.0, t.upper - t.lower);
     if (z < t.lower + near || z > t.upper - near) fitted.state = FittedValue::State::at_bound;
     for (const Undetermined& u : undetermined_) {
       if (u.coordinate != i) continue;

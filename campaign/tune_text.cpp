@@ -62,7 +62,7 @@ std::string undetermined_text(const TuneResult& result) {
           "fitted beside it.\n",
           p.tuned.path, sameness_text(result, p));
   for (const FittedValue& p : result.parameters)
-    if (p.deviation && *p.deviation > std::abs(p.tuned.slope(p.tuned.coordinate(p.value))))
+    if (p.deviation && *p.deviation > std::abs(p.value))
       text += fmt::format("Hardly determined: {}: its standard deviation is as large as itself.\n", p.tuned.path);
   return text;
 }

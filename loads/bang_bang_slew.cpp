@@ -23,14 +23,18 @@ struct Target {
 class BoundBangBangSlew final : public BoundLoad {
  public:
   BoundBangBangSlew(const LimitedTree& tree, SwitchingPlan plan)
-      : axes_(tree.axes()), plan_(std::move(plan)), holding_(tree.holding()) {}
+      : axes_(tree.axes()),
+        plan_(std::move(plan)),
+        before_(tree.holding(&LimitedAxis::from)),
+        after_(tree.holding(&LimitedAxis::to)) {}
   std::size_t scratch() const override { return 0; }
   void add(double t, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
            std::span<double> efforts, std::span<double> /*scratch*/) const noexcept override {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const SwitchingPlan::Axis& axis = plan_.axes[i];
       const auto passed = std::upper_bound(axis.switches.begin(), axis.switches.end(), t) - axis.switches.begin();
-      efforts[axes_[i].speed] += t >= plan_.end ? holding_[i] : (passed % 2 == 0 ? axis.first : -axis.first);
+      const double driving = passed % 2 == 0 ? axis.first : -axis.first;
+      efforts[axes_[i].speed] += t < 0 ? before_[i] : t < plan_.end ? driving : after_[i];
     }
   }
   bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
@@ -53,13 +57,13 @@ class BoundBangBangSlew final : public BoundLoad {
  private:
   std::vector<LimitedAxis> axes_;
   SwitchingPlan plan_;
-  std::vector<double> holding_;  ///< efforts after the end
+  std::vector<double> before_, after_;  ///< efforts that hold the axes where they rest
 };
 
 /// What a plan depends on: the axes, and the accelerations of the tree at more states than it has constants.
 std::vector<double> what_counts(const LimitedTree& tree) {
   constexpr int states = 16;
-  std::vector<double> all = tree.holding();
+  std::vector<double> all = tree.holding(&LimitedAxis::to);
   for (const LimitedAxis& a : tree.axes()) all.insert(all.end(), {a.from, a.to, a.limit});
   const auto n = static_cast<Eigen::Index>(tree.axes().size());
   std::mt19937 random(1);

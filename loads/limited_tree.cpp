@@ -42,9 +42,9 @@ LimitedTree::Vector LimitedTree::derivative(const Vector& state, const double* e
   return rate;
 }
 
-std::vector<double> LimitedTree::holding() const {
+std::vector<double> LimitedTree::holding(double LimitedAxis::*place) const {
   Vector rest = Vector::Zero(2 * static_cast<Eigen::Index>(axes_.size()));
-  for (std::size_t i = 0; i < axes_.size(); ++i) rest[static_cast<Eigen::Index>(i)] = axes_[i].to;
+  for (std::size_t i = 0; i < axes_.size(); ++i) rest[static_cast<Eigen::Index>(i)] = axes_[i].*place;
   std::vector<double> efforts(axes_.size());
   inverse(rest, -1, efforts.data());
   return efforts;

@@ -27,8 +27,8 @@ class LimitedTree {
   [[nodiscard]] const std::vector<LimitedAxis>& axes() const { return axes_; }
   /// Time derivative of (x, ẋ) under efforts, one for each axis: M ẍ = τ − ID(x, ẋ, 0).
   [[nodiscard]] Vector derivative(const Vector& state, const double* efforts) const;
-  /// Efforts that hold the axes at their targets.
-  [[nodiscard]] std::vector<double> holding() const;
+  /// Efforts that hold the axes where each is by `place`: &LimitedAxis::from, &LimitedAxis::to.
+  [[nodiscard]] std::vector<double> holding(double LimitedAxis::*place) const;
 
  private:
   /// ID of the tree, for accelerations that are zero but for that of `moving` (−1: none), which is one.

@@ -296,6 +296,7 @@ Json modes_study_json(const std::string& scene, const study::Sweep& sweep, const
     j["runs"].push_back(modes_json(found.runs[i]));
     j["runs"].back()["against_next"] = against_json(found.against[i]);
   }
+  if (found.interrupted) j["interrupted"] = true;
   if (found.masses) j["effective_mass"] = effective_mass_json(*found.masses);
   if (found.damping) j["damping"] = mounted_damping_json(*found.damping);
   return j;

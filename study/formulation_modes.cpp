@@ -51,8 +51,11 @@ ModesFound find_modes(const Prepared& base, Registry& registry, const ModesQuest
           frequencies_against_next(found.runs.back(), values, registry, question.start, question.holding,
                                    question.as_is, question.compared, control(formulation));
     found.interrupted = sweeping.stop();
+    if (!found.interrupted) continue;
+    if (question.sweep.none() || found.runs.back().points.empty()) found.runs.pop_back(), found.against.pop_back();
+    return found;
   }
-  if (!found.interrupted) look_further(base, registry, question, found);
+  look_further(base, registry, question, found);
   return found;
 }
 

@@ -32,6 +32,7 @@ void check_question(const ModesQuestion& question);
 struct ModesFound {
   std::vector<ModesOf> runs;                        ///< one a formulation
   std::vector<std::optional<AgainstNext>> against;  ///< of each; none along a sweep
+  /// Of a sweep the values that were done are there, of formulations that were not begun nothing; else nothing is.
   bool interrupted = false;
   std::optional<EffectiveMasses> masses;  ///< none where nobody asked or there are no modes
   std::optional<MountedDamping> damping;  ///< the same

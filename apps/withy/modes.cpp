@@ -56,7 +56,7 @@ ExitStatus modes(const ModesArguments& arguments) {
                   {"modes.json", "modes.csv", "modes.svg", "blades.csv", "blades.svg", report_name}, arguments.state);
   question.holding = study::read_holding(engine.model(), arguments.lock, arguments.spin);
   const study::ModesFound all = find_modes(engine.prepared(), engine.registry(), question, study_control);
-  if (all.interrupted) return ExitStatus::interrupted;
+  if (all.interrupted && all.runs.empty()) return ExitStatus::interrupted;
   const study::Sweep& sweep = question.sweep;
   const nlohmann::ordered_json j = modes_study_json(arguments.scene, sweep, all);
   if (!arguments.out.empty())
@@ -75,6 +75,7 @@ ExitStatus modes(const ModesArguments& arguments) {
   }
   const std::vector<std::string> problems = study::modes_problems(all.runs, sweep);
   for (const std::string& problem : problems) complain(problem);
+  if (all.interrupted) return ExitStatus::interrupted;
   return problems.empty() ? ExitStatus::done : ExitStatus::stopped;
 }
 

@@ -54,8 +54,8 @@ Eigen::VectorXd moved_by_rounding(const Eigen::MatrixXcd& vectors, double roundi
 
 /// Eigenvalues with zero for each direction that A takes to nothing, and again for what is left without it: a chain of
 /// integrators, whose eigenvalues rounding would spread by its root, is taken apart link by link. Those are exact.
-/// \param rounding of elements, beside that of A itself \param size greatest of what A is made of
-KnownRoots eigenvalues_with_zeros(const Eigen::MatrixXd& A, double rounding, double size) {
+/// \param rounding of elements, beside that of A itself
+KnownRoots eigenvalues_with_zeros(const Eigen::MatrixXd& A, double rounding) {
   constexpr double share = 1e-13;
   if (!A.allFinite()) throw std::domain_error("the linear system is not finite");
   KnownRoots roots{Eigen::VectorXcd::Zero(A.rows()), Eigen::VectorXd::Zero(A.rows())};
@@ -70,7 +70,7 @@ KnownRoots eigenvalues_with_zeros(const Eigen::MatrixXd& A, double rounding, dou
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(left);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
   roots.values.head(left.rows()) = solver.eigenvalues();
-  size = std::max(size, left.norm());
+  const double size = left.norm();
   roots.errors.head(left.rows()) = moved_by_rounding(solver.eigenvectors(), share * size, size);
   return roots;
 }
@@ -89,6 +89,74 @@ void balance_with_ends(LinearSystem& s) {
   s.A = all.A.topLeftCorner(n, n);
   s.B = all.A.topRightCorner(n, 1);
   s.C = all.A.bottomLeftCorner(1, n);
+}
+
+/// A − s E, singular at the zeros of a system with D: [A − s 1, B; C, D] without the column that C and D are turned
+/// onto (Emami-Naeini and Van Dooren 1982). Nothing is divided by D, beside which what the states carry to y may be of
+/// any size.
+struct Pencil {
+  Eigen::MatrixXd A, E;
+  double turned = 0;  ///< length of C and D
+};
+
+/// \param s balanced; D is not zero
+Pencil pencil_of_zeros(const LinearSystem& s) {
+  const Eigen::Index n = s.A.rows();
+  const double input = s.B.norm(), unit = input > 0 && s.A.norm() > 0 ? s.A.norm() / input : 1;
+  Eigen::VectorXd v(n + 1);
+  v << s.C.transpose(), unit * s.D(0, 0);
+  const double turned = v.norm();
+  v[n] += v[n] < 0 ? -turned : turned;
+  const Eigen::VectorXd x = v.head(n), along = 2 / v.squaredNorm() * x;
+  return {s.A - (s.A * x + unit * v[n] * s.B) * along.transpose(),
+          Eigen::MatrixXd::Identity(n, n) - x * along.transpose(), turned};
+}
+
+/// Takes directions off that A takes to nothing and E does not, as Quotient does where E is 1.
+/// \param of_elements what elements of A may be off by; becomes that of what is left
+void drop(Pencil& p, const Eigen::MatrixXd& directions, Eigen::MatrixXd& of_elements) {
+  const Apart right(directions), left(p.E * right.columns);
+  const auto others = [&](const std::vector<Eigen::Index>& gone) {
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < p.A.rows(); ++i)
+      if (std::find(gone.begin(), gone.end(), i) == gone.end()) kept.push_back(i);
+    return kept;
+  };
+  const std::vector<Eigen::Index> rows = others(left.rows), columns = others(right.rows);
+  const Eigen::MatrixXd by = left.columns(rows, Eigen::all);
+  const auto without = [&](const Eigen::MatrixXd& m) -> Eigen::MatrixXd {
+    return m(rows, columns) - by * m(left.rows, columns);
+  };
+  of_elements = (of_elements(rows, columns) + by.cwiseAbs() * of_elements(left.rows, columns)).eval();
+  p.A = without(p.A);
+  p.E = without(p.E);
+}
+
+/// As eigenvalues_with_zeros. \param known how much more than rounding the pencil may be off by
+KnownRoots roots_of(Pencil p, double rounding, double known) {
+  constexpr double share = 1e-13;
+  if (!p.A.allFinite()) throw std::domain_error("the linear system is not finite");
+  KnownRoots roots{Eigen::VectorXcd::Zero(p.A.rows()), Eigen::VectorXd::Zero(p.A.rows())};
+  Eigen::MatrixXd of_elements = rounding_of(p.A).array() + rounding;
+  for (Eigen::MatrixXd gone = unheld_but_for(p.A, of_elements); gone.cols() > 0;
+       gone = unheld_but_for(p.A, of_elements))
+    drop(p, gone, of_elements);
+  if (p.A.rows() == 0) return roots;
+  const Eigen::GeneralizedEigenSolver<Eigen::MatrixXd> solver(p.A, p.E);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the zeros were not found");
+  const Eigen::MatrixXcd right = solver.eigenvectors();
+  const Eigen::MatrixXcd left = Eigen::PartialPivLU<Eigen::MatrixXcd>(p.E * right).inverse();
+  for (Eigen::Index i = 0; i < p.A.rows(); ++i) {
+    // One that is nowhere is as far away as rounding lets it be.
+    const double beta = solver.betas()[i], least = 1e-16 * p.E.norm();
+    roots.values[i] = solver.alphas()[i] / (std::abs(beta) > least ? beta : std::copysign(least, beta));
+    const double size = p.A.norm() + std::abs(roots.values[i]);
+    const double here = share * known * size * left.row(i).norm() * right.col(i).norm();
+    // Of double ones without two vectors, of which the vectors tell nothing.
+    const double at_most = std::sqrt(share * known) * size;
+    roots.errors[i] = here < at_most ? here : at_most;
+  }
+  return roots;
 }
 
 }  // namespace
@@ -154,11 +222,11 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const
 KnownRoots known_poles(const LinearSystem& system) {
   LinearSystem s = system;
   balance(s);
-  if (!s.sampled()) return eigenvalues_with_zeros(s.A, 0, 0);
+  if (!s.sampled()) return eigenvalues_with_zeros(s.A, 0);
   // What rests between samples stands at 1.
   const double size = std::max(1.0, s.A.size() > 0 ? s.A.cwiseAbs().maxCoeff() : 0.0);
   s.A.diagonal().array() -= 1;
-  KnownRoots roots = eigenvalues_with_zeros(s.A, beside_one(s.A.rows()) * size, 0);
+  KnownRoots roots = eigenvalues_with_zeros(s.A, beside_one(s.A.rows()) * size);
   roots.values.array() += 1;
   return roots;
 }
@@ -197,16 +265,15 @@ ZerosAndGain zeros(LinearSystem s) {
     through = std::abs(s.D(0, 0));
     dropped = true;
   }
-  const double d = s.D(0, 0);
-  const Eigen::MatrixXd through_d = s.B * s.C / d;
-  Eigen::MatrixXd left = s.A - through_d;
   // D of a state that was dropped is what is left of a vector as long as B, and known to the rounding of that; the
   // system's own D is known to its own.
-  const double size = s.A.norm() + through_d.norm() * (dropped ? std::max(1.0, s.B.norm() / std::abs(d)) : 1.0);
-  if (!s.sampled()) return {eigenvalues_with_zeros(left, 0, size), product * d};
+  Pencil pencil = pencil_of_zeros(s);
+  const double known = dropped ? std::max(1.0, pencil.A.norm() / pencil.turned) : 1.0;
+  if (!s.sampled()) return {roots_of(std::move(pencil), 0, known), product * s.D(0, 0)};
   // As of poles: what the loop neither sees nor moves rests between samples, and stands at 1 with what else is there.
-  left.diagonal().array() -= 1;
-  ZerosAndGain found{eigenvalues_with_zeros(left, beside_one(left.rows()) * std::max(1.0, size), size), product * d};
+  pencil.A -= pencil.E;
+  const double rounding = beside_one(pencil.A.rows()) * std::max(1.0, pencil.A.norm());
+  ZerosAndGain found{roots_of(std::move(pencil), rounding, known), product * s.D(0, 0)};
   found.zeros.values.array() += 1;
   return found;
 }

@@ -249,6 +249,46 @@ TEST(Tune, TellsSamenessInPerCentsOfTheValuesFound) {
   }
 }
 
+// A value is at a bound where it is near beside the bounds' distance, however narrow they are; and hardly determined
+// beside itself, whatever the scene begins with.
+TEST(Tune, JudgesValuesByTheirBoundsAndByThemselves) {
+  const TuneFolder folder;
+  folder.measure({}, 1e-4, 8);
+  const TuneResult wide = folder.tuned({"loads.spring.stiffness=40..80", "loads.spring.damping"});
+  const double found = wide.parameters[0].value;
+  TuneQuestion question;
+  question.parameters = {fmt::format("loads.spring.stiffness={}..{}", found - 0.02, found + 0.02),
+                         "loads.spring.damping"};
+  const TuneResult narrow =
+      folder.tuned(question, std::string(block).replace(std::string(block).find("stiffness: 50"), 13,
+                                                        fmt::format("stiffness: {}", found - 0.01)));
+  ASSERT_EQ(narrow.parameters[0].state, State::fitted);
+  EXPECT_NEAR(narrow.parameters[0].value, found, 1e-3);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(*narrow.parameters[i].deviation, *wide.parameters[i].deviation, 0.01 * *wide.parameters[i].deviation);
+  question.parameters = {"initial.hinges.slide.rate.0"};
+  const std::string from_little =
+      std::string(block).replace(std::string(block).find("rate: [0.3]"), 11, "rate: [1e-6]");
+  EXPECT_THAT(tune_text(folder.tuned(question, from_little), "block"), testing::Not(HasSubstr("Hardly determined")));
+}
+
+// At rest in its place a block has no stiffness that is seen; from another start it has.
+TEST(Tune, StartsLookForWhatTheSceneHides) {
+  const TuneFolder folder;
+  folder.measure({.damping = 0.8}, 1e-5, 2);
+  std::string at_rest = block;
+  at_rest.replace(at_rest.find("stiffness: 50"), 13, "stiffness: 56");
+  at_rest.replace(at_rest.find("[\"20 mm\"], rate: [0.3]"), 22, "[0], rate: [0]");
+  TuneQuestion question;
+  question.parameters = {"loads.spring.stiffness=54..62", "initial.hinges.slide.position.0=0..0.05",
+                         "initial.hinges.slide.rate.0=0.1..0.5"};
+  question.starts = 4;
+  const TuneResult result = folder.tuned(question, at_rest);
+  EXPECT_EQ(result.agreeing, 4u);
+  EXPECT_NEAR(result.parameters[0].value, 58, 0.01);
+  for (const SearchEnd& end : result.starts) EXPECT_NE(end.to[0], 56) << "none keeps what the scene begins with";
+}
+
 TEST(Tune, NamesWhatTheDataCannotTellApart) {
   const TuneFolder folder;
   folder.measure({}, 1e-4, 1);

@@ -48,6 +48,22 @@ loads: {slew: {type: bang-bang-slew, hinges: {axle: {from: 0.4, to: -0.5, limit:
   }
 }
 
+// A pendulum that a run begins with before 0 is held where the slew begins, and afterwards where it ends: m g l sin x.
+TEST(BangBangSlew, carries_the_weight_before_and_after) {
+  const test::LoadedScene s(R"(format: withy/1
+gravity: [0, -9.81, 0]
+bodies: {rod: {type: rigid, mass: 2, center_of_mass: [0, -0.5, 0], inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: rod}}
+loads: {slew: {type: bang-bang-slew, hinges: {pivot: {from: 0.3, to: -0.4, limit: 20}}}}
+)");
+  const BoundLoad& load = *s.scene.model->loads()[0].load;
+  for (const auto& [t, angle] : {std::pair(-1.0, 0.3), {-1e-9, 0.3}, {load.end(), -0.4}}) {
+    std::vector<double> tau(1);
+    load.add(t, {}, {}, tau, {});
+    EXPECT_NEAR(tau[0], 2 * 9.81 * 0.5 * std::sin(angle), 1e-12) << t;
+  }
+}
+
 // The same search on the closed-form equations of the rigid arm, with steps fine enough for the digits given. Limits of
 // 10 and 10 N m have two extremals, which end at 2.65697 and 2.35211 s: the faster counts.
 TEST(BangBangSlew, of_the_papers_arm_has_the_switches_of_its_closed_form) {
