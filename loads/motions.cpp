@@ -123,6 +123,11 @@ std::unique_ptr<Motion> make_table(const Value& p, const MakeContext& context) {
     times.push_back(row.items()[0].number());
     positions.push_back(row.items()[1].number());
   }
+  if (times.size() == 1 && value(p, "start_rate") != value(p, "end_rate")) {
+    context.diagnostics.error(rows.place(),
+                              "has one row, where the rate would jump from 'start_rate' to 'end_rate'; need two rows");
+    return nullptr;
+  }
   return std::make_unique<Following<Spline>>(
       Spline(std::move(times), std::move(positions), value(p, "start_rate"), value(p, "end_rate")));
 }

@@ -309,6 +309,8 @@ TEST(Motions, say_what_is_wrong_with_them) {
               HasSubstr("/initial/hinges/pin/rate"));
   EXPECT_EQ(problem("x: {type: locked, hinge: pin}", "initial: {hinges: {pin: {position: [1]}}}\n"), "");
   EXPECT_THAT(problem("x: {type: table, hinge: pin, table: []}"), HasSubstr("/motions/x/table"));
+  EXPECT_THAT(problem("x: {type: table, hinge: pin, table: [[0.5, 0.3]], start_rate: 1, end_rate: 2}"),
+              HasSubstr("has one row, where the rate would jump"));
 }
 
 }  // namespace
