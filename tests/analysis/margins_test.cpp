@@ -50,7 +50,7 @@ LinearSystem with_little_through(double through) {
 
 // Zeros so uncertain that any was within its error of a pole took poles out of the response, and off the static gain.
 TEST(Roots, OfASystemWithTheSlightestDirectWayAreAllSeen) {
-  for (const double through : {1e-4, 1e-6, 1e-8}) {
+  for (const double through : {1.0, 1e-4, 1e-6, 1e-8, 1e-10}) {
     const LinearSystem system = with_little_through(through);
     const ZerosAndGain found = zeros(system);
     ASSERT_EQ(found.zeros.values.size(), 4);
@@ -60,6 +60,15 @@ TEST(Roots, OfASystemWithTheSlightestDirectWayAreAllSeen) {
     const std::complex<double> product = (-seen.zeros).prod() / (-seen.poles).prod() * found.gain;
     const double direct = (system.D - system.C * system.A.inverse() * system.B)(0, 0);
     EXPECT_NEAR(product.real(), direct, 1e-6 * std::abs(direct)) << through;
+    // Far from zeros and poles too.
+    for (const std::complex<double> s : {std::complex<double>(3, 8), {-20, 40}, {0.1, 900}}) {
+      const Eigen::MatrixXcd M = s * Eigen::MatrixXcd::Identity(4, 4) - system.A;
+      const std::complex<double> exact =
+          (system.C * M.partialPivLu().solve(system.B.cast<std::complex<double>>()))(0) + through;
+      EXPECT_LT(std::abs((s - seen.zeros).prod() / (s - seen.poles).prod() * found.gain - exact),
+                1e-6 * std::abs(exact))
+          << through << s;
+    }
   }
 }
 

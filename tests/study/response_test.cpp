@@ -51,6 +51,30 @@ TEST(Response, OfTheSlewsAccelerometerHasTheStaticGainOfItsCurve) {
   EXPECT_NEAR(r.static_gain, slow.real(), 1e-5 * std::abs(slow));
 }
 
+// Links with springs between them and free to turn: slowly the tip of the last accelerates as that of one rigid rod,
+// L/J, though a torque at the first is felt there at once by a factor of 1e-9 less.
+TEST(Response, OfALongChainsTipIsSlowlyThatOfARigidRod) {
+  constexpr int links = 16;
+  std::string bodies = "bodies:\n", hinges = "hinges:\n", loads = "loads:\n  u: {type: input, hinge: j1}\n";
+  double inertia = 0;
+  for (int i = 1; i <= links; ++i) {
+    const std::string n = std::to_string(i), before = i == 1 ? "world" : 'l' + std::to_string(i - 1) + ".out";
+    bodies +=
+        "  l" + n +
+        ": {type: rigid, mass: 1.2, center_of_mass: [0.15, 0, 0], inertia: [0.002, 0.01, 0.011, 0, 0, 0], frames: "
+        "{out: {position: [0.3, 0, 0]}}}\n";
+    hinges += "  j" + n + ": {type: revolute, axis: [0, 0, 1], parent: " + before + ", child: l" + n + "}\n";
+    if (i > 1) loads += "  d" + n + ": {type: hinge-spring, hinge: j" + n + ", stiffness: 2000, damping: 2}\n";
+    const double arm = 0.3 * (i - 0.5);
+    inertia += 0.011 + 1.2 * arm * arm;
+  }
+  const Prepared prepared = scene_of('\n' + bodies + hinges + loads + "outputs: {acc: {type: accelerometer, of: l" +
+                                     std::to_string(links) + ".out}}\n");
+  const Response r = response(at_start(prepared), {"u", "acc.y", {}, {}, 20, {}});
+  const double rigid = 0.3 * links / inertia;
+  EXPECT_NEAR(r.static_gain, rigid, 1e-4 * rigid);
+}
+
 /// Its name is the beginning of its rate's.
 TEST(Response, OfACoordinateIsThatOfNoRate) {
   const Prepared prepared = scene_of(R"(
