@@ -65,7 +65,7 @@ TEST(Roots, OfASystemWithTheSlightestDirectWayAreAllSeen) {
       const Eigen::MatrixXcd M = s * Eigen::MatrixXcd::Identity(4, 4) - system.A;
       const std::complex<double> exact =
           (system.C * M.partialPivLu().solve(system.B.cast<std::complex<double>>()))(0) + through;
-      EXPECT_LT(std::abs((s - seen.zeros).prod() / (s - seen.poles).prod() * found.gain - exact),
+      EXPECT_LT(std::abs((s - seen.zeros.array()).prod() / (s - seen.poles.array()).prod() * found.gain - exact),
                 1e-6 * std::abs(exact))
           << through << s;
     }
