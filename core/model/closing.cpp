@@ -121,6 +121,20 @@ bool in_loop(const Model& model, std::size_t body) {
   return false;
 }
 
+std::vector<bool> hinges_in_loops(const Model& model) {
+  std::vector<bool> all(model.hinges().size()), way(all.size());
+  for (const LoopClosure* loop : loops_of(model)) {
+    std::fill(way.begin(), way.end(), false);
+    for (int end : {loop->a().body, loop->b().body})
+      for (; end >= 0; end = model.hinges()[static_cast<std::size_t>(end)].parent) {
+        const auto body = static_cast<std::size_t>(end);
+        way[body] = !way[body];  // what carries both ends is met twice
+      }
+    for (std::size_t h = 0; h < all.size(); ++h) all[h] = all[h] || way[h];
+  }
+  return all;
+}
+
 // Frames that nothing joins do not count: they are no part of what moves, and reactions that depend on this length, as
 // those of redundant loops do, are the same whatever else a scene watches or loads.
 double length_of_loops(const Model& model) {

@@ -12,8 +12,9 @@ namespace {
 
 /// Of a step, to a four-thousandth of it.
 constexpr std::size_t most_halvings = 12;
-/// How far hinges may turn between states of which the rank is told [rad], and the most parts of a step for that.
-constexpr double most_turned = 1, most_parts = 4096;
+/// How far hinges of loops may turn between states of which the rank is told [rad], and the most parts of a step for
+/// that.
+constexpr double most_turned = 1, most_times = 4096;
 /// How far the coordinates of a run's start go on for a look beside it [rad, m].
 constexpr double beside = 1e-3;
 
@@ -71,7 +72,7 @@ double LoopWatch::kept_through(const Stepper& stepper, const State& after) {
   const double start = last_.time, length = after.time - start;
   const double turned = loops_->turned(last_.y, after.y, length);
   if (!(turned > most_turned)) return kept_until(stepper, last_, after, most_halvings);
-  const double parts = std::min(std::ceil(turned / most_turned), most_parts);
+  const double parts = std::min(std::ceil(turned / most_turned), most_times);
   from_ = last_;
   for (double k = 1; k < parts; ++k) {
     to_.time = start + length * (k / parts);
