@@ -206,6 +206,35 @@ TEST(SingularLoops, OfFourBarsAreThereWhereWaysForkAndNotBesideItInAnySize) {
       }
 }
 
+/// The same on a hub of 50 kg at a hinge of its own.
+std::string on_hub(std::string text, const std::string& hinge) {
+  text = replaced(text, "parent: world, child: a", "parent: h, child: a");
+  text = replaced(text, "parent: world, child: c", "parent: h, child: c");
+  text = replaced(text, "bodies:\n", "bodies:\n  h: {type: rigid, mass: 50, inertia: [5, 5, 5, 0, 0, 0]}\n");
+  return replaced(text, "hinges:\n", "hinges:\n  H: {" + hinge + ", parent: world, child: h}\n");
+}
+
+/// What carries a loop moves it as a whole and opens no way: its column of J is the gap that is left, or rounding.
+TEST(SingularLoops, OfWhatIsCarriedAreThoseOfWhatHangsOnTheWorld) {
+  for (const char* hub :
+       {"type: revolute, axis: [0, 0, 1]", "type: free", "type: spherical", "type: planar, axis: [0, 0, 1]"})
+    for (const char* name : {"dopri5", "dop853", "radau"})
+      for (const double rtol : {1e-4, 1e-6, 1e-9})
+        for (const double more : {0.0, 1e-4}) {
+          std::ostringstream integrator;
+          integrator << "{name: " << name << ", rtol: " << rtol << ", atol: " << 0.01 * rtol << "}";
+          for (const double coupler : {2.0, 1.6}) {
+            // A parallelogram; a four-bar whose crank turns round and whose other links never are in line with it.
+            const std::string bar = coupler == 2 ? four_bar_of(1, 2, 1, 2 * (1 + more), 2, 1, integrator.str())
+                                                 : four_bar_of(0.6, coupler, 1.5, 1.7, 2, 1, integrator.str());
+            const Made made(on_hub(bar, hub));
+            const RunSummary summary = run(made, 2);
+            EXPECT_EQ(summary.status, coupler == 2 && more == 0 ? RunStatus::singular : RunStatus::completed)
+                << hub << ", " << integrator.str() << ", " << coupler << ", " << more << ": " << summary.message;
+          }
+        }
+}
+
 /// A four-bar with more bodies and hinges; `ground` carries it.
 std::string four_bar_beside(const std::string& bodies, const std::string& hinges, const std::string& ground) {
   std::string text = four_bar(rigid_coupler, "{name: dop853, rtol: 1e-6, atol: 1e-6}");
