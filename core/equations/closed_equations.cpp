@@ -27,6 +27,7 @@ ClosedEquations::ClosedEquations(std::shared_ptr<const Model> model, Terms terms
       loads_(*model_, terms),
       paths_(*model_, terms),
       angles_(*model_),
+      in_loops_(speeds_in_loops(*model_)),
       rows_(paths_.size()),
       speeds_(layout().speeds) {
   if (mass_ == nullptr || mass_->mass_factors_size() == 0)

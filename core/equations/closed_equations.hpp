@@ -86,7 +86,8 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   AppliedLoads loads_;      ///< for sensors, and for what loads measure of accelerations
   LoopPaths paths_;
   HingeAngles angles_;
-  std::vector<Slot> driven_;  ///< hinges that motions drive
+  std::vector<bool> in_loops_;  ///< speeds
+  std::vector<Slot> driven_;    ///< hinges that motions drive
   std::size_t rows_ = 0, speeds_ = 0;
   // Work memory, behind the tree's.
   Region of_paths_, of_loads_;

@@ -60,7 +60,8 @@ std::size_t ClosedEquations::distinct_rows(std::span<const double> sizes, Work& 
   return distinct;
 }
 
-/// In the place of M⁻¹, which a direction with next to no inertia outweighs, one over the squares of J₁'s columns.
+/// In the place of M⁻¹, which a direction with next to no inertia outweighs, one over the squares of J₁'s columns. What
+/// carries a loop has columns as small as the gap, or as rounding, which beside their own size would count for rank.
 bool ClosedEquations::keeps_rank_by_columns(std::size_t rank, Work& work) const noexcept {
   const std::span<const double> now = J_.in(work), later = J_after_.in(work), Z = Z_.in(work);
   const std::span<double> weights = slopes_.in(work).first(speeds_), A = A_.in(work), B = other_A_.in(work);
@@ -70,7 +71,7 @@ bool ClosedEquations::keeps_rank_by_columns(std::size_t rank, Work& work) const 
       square += now[i * speeds_ + c] * now[i * speeds_ + c];
       moved = std::max(moved, std::abs(Z[i * speeds_ + c]));
     }
-    weights[c] = moved > 0 && square > 0 ? 1 / square : 0;
+    weights[c] = in_loops_[c] && moved > 0 && square > 0 ? 1 / square : 0;
   }
   const auto weighed = [&](std::span<const double> rows, std::size_t i, std::size_t j) {
     double sum = 0;

@@ -121,6 +121,36 @@ bool in_loop(const Model& model, std::size_t body) {
   return false;
 }
 
+std::vector<bool> hinges_in_loops(const Model& model) {
+  std::vector<bool> all(model.hinges().size()), way(all.size());
+  for (const LoopClosure* loop : loops_of(model)) {
+    std::fill(way.begin(), way.end(), false);
+    for (int end : {loop->a().body, loop->b().body})
+      for (; end >= 0; end = model.hinges()[static_cast<std::size_t>(end)].parent) {
+        const auto body = static_cast<std::size_t>(end);
+        way[body] = !way[body];  // what carries both ends is met twice
+      }
+    for (std::size_t h = 0; h < all.size(); ++h) all[h] = all[h] || way[h];
+  }
+  return all;
+}
+
+std::vector<bool> speeds_in_loops(const Model& model) {
+  const Layout& layout = model.layout();
+  std::vector<bool> all(layout.speeds);
+  const auto add = [&all](const Slot* slot) {
+    for (std::size_t i = 0; slot != nullptr && i < slot->speeds; ++i) all[slot->speed + i] = true;
+  };
+  const std::vector<bool> in_loops = hinges_in_loops(model);
+  for (std::size_t h = 0; h < in_loops.size(); ++h) {
+    if (!in_loops[h]) continue;
+    add(&layout.hinges[h]);
+    add(layout.modes(h));
+    if (const int parent = model.hinges()[h].parent; parent >= 0) add(layout.modes(static_cast<std::size_t>(parent)));
+  }
+  return all;
+}
+
 // Frames that nothing joins do not count: they are no part of what moves, and reactions that depend on this length, as
 // those of redundant loops do, are the same whatever else a scene watches or loads.
 double length_of_loops(const Model& model) {

@@ -51,6 +51,11 @@ std::vector<const LoopClosure*> loops_of(const Model& model);
 /// Whether a loop runs through the inboard hinge of a body: it is on the way, within the tree, from one frame of a loop
 /// to the other.
 bool in_loop(const Model& model, std::size_t body);
+/// in_loop of all hinges. What carries a loop with both its ends is none of its own.
+std::vector<bool> hinges_in_loops(const Model& model);
+/// The generalized speeds that change the shape of a loop: of its hinges and its bodies, that from which its two sides
+/// go out included. What carries a loop moves it as a whole.
+std::vector<bool> speeds_in_loops(const Model& model);
 /// ℓ [m] of a model's loops, by which rotations count as gaps: the length of the longest flexible body, or where that
 /// is more the greatest distance from its body's root of a frame that a hinge or a constraint joins, or of a hinge or
 /// closing frame from what it is placed in; 1 where all are at one place.

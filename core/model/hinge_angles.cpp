@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 
 namespace withy {
 
 HingeAngles::HingeAngles(const Model& model) {
+  const std::vector<bool> in_loops = hinges_in_loops(model);
   for (const ModelRate& rate : hinge_rates(model))
-    if (rate.angular) angles_.push_back({model.layout().positions + rate.speed, rate.position});
+    if (rate.angular && in_loops[rate.hinge]) angles_.push_back({model.layout().positions + rate.speed, rate.position});
 }
 
 double HingeAngles::turned(std::span<const double> before, std::span<const double> after,

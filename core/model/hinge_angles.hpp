@@ -1,5 +1,5 @@
 /// \file
-/// How far the hinges of a model turn from one state to another.
+/// How far the hinges of a model's loops turn from one state to another.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,12 @@
 
 namespace withy {
 
-/// The angles of a model's hinges in its states. Immutable.
+/// The angles of the hinges that loops run through, in states of a model. A rotor beside a loop or on a link of it, and
+/// what carries all of a loop, leave the closing equations as they are. Immutable.
 class HingeAngles {
  public:
   explicit HingeAngles(const Model& model);
-  /// The greatest angle by which a hinge turns from one state to the next, `seconds` later [rad]: by its coordinates,
+  /// The greatest angle by which one turns from one state to the next, `seconds` later [rad]: by its coordinates,
   /// or by its rates at one of the two where these say more, as of a spherical hinge.
   [[nodiscard]] double turned(std::span<const double> before, std::span<const double> after,
                               double seconds) const noexcept;

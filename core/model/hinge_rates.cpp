@@ -51,7 +51,7 @@ std::vector<ModelRate> hinge_rates(const Model& model) {
     const Slot& slot = model.layout().hinges[h];
     std::size_t speed = slot.speed;
     for (const HingeRate& rate : hinge_rates(*model.hinges()[h].hinge)) {
-      ModelRate& placed = all.emplace_back(ModelRate{speed++, {}, rate.angular});
+      ModelRate& placed = all.emplace_back(ModelRate{speed++, {}, rate.angular, h});
       if (rate.coordinate) placed.position = slot.position + *rate.coordinate;
     }
   }

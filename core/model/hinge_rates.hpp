@@ -26,6 +26,7 @@ struct ModelRate {
   std::size_t speed = 0;                ///< of the generalized speeds
   std::optional<std::size_t> position;  ///< of the positions the one whose derivative it is, as HingeRate::coordinate
   bool angular = false;                 ///< as HingeRate::angular
+  std::size_t hinge = 0;                ///< index in Model::hinges()
 };
 
 /// One for each rate of the model's hinges, in the order of these.

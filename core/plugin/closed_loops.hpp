@@ -62,9 +62,9 @@ class ClosedLoops {
   /// of where ways fork no state is known to be on one of them, and short steps slide from one to the other.
   [[nodiscard]] virtual bool keeps_rank(std::span<const double> before, std::span<const double> after,
                                         const LoopRank& rank, Work& work) const noexcept = 0;
-  /// The greatest angle by which a hinge turns from one state to the next, `seconds` later [rad]: by its coordinates,
-  /// or its rates where these say more, as of a spherical hinge. keeps_rank says nothing of ways on which it is some
-  /// radians, for rows that come round again are the same.
+  /// The greatest angle by which a hinge that changes rows of J turns from one state to the next, `seconds` later
+  /// [rad]: by its coordinates, or its rates where these say more, as of a spherical hinge. keeps_rank says nothing of
+  /// ways on which it is some radians, for rows that come round again are the same.
   [[nodiscard]] virtual double turned(std::span<const double> /*before*/, std::span<const double> /*after*/,
                                       double /*seconds*/) const noexcept {
     return 0;

@@ -12,7 +12,8 @@ namespace {
 
 /// Of a step, to a four-thousandth of it.
 constexpr std::size_t most_halvings = 12;
-/// How far hinges may turn between states of which the rank is told [rad], and the most parts of a step for that.
+/// How far hinges of loops may turn between states of which the rank is told [rad], and the most parts of a step for
+/// that.
 constexpr double most_turned = 1, most_times = 4096;
 /// How far the coordinates of a run's start go on for a look beside it [rad, m].
 constexpr double beside = 1e-3;

@@ -23,7 +23,7 @@ class LoopWatch {
   /// Rank between two states of the last step; a way that is too far to tell is halved, so often at most. \returns the
   /// time up to which it is kept for sure; that of `after` where it is all the way
   double kept_until(const Stepper& stepper, const State& before, const State& after, std::size_t halvings);
-  /// The same of a whole step, in parts over which no hinge turns far.
+  /// The same of a whole step, in parts over which no hinge of a loop turns far.
   double kept_through(const Stepper& stepper, const State& after);
   [[nodiscard]] std::size_t independent_at(const State& state);
   /// A little further on along the rates of the start, or its accelerations where it is at rest; 0 where it stays

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iomanip>
 #include <numbers>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "four_bar.hpp"
 
@@ -202,6 +204,105 @@ TEST(SingularLoops, OfFourBarsAreThereWhereWaysForkAndNotBesideItInAnySize) {
                 << size << ", " << integrator.str() << ", " << l.coupler << ", " << more << ": " << summary.message;
           }
       }
+}
+
+/// The same on a hub of 50 kg at a hinge of its own.
+std::string on_hub(std::string text, const std::string& hinge) {
+  text = replaced(text, "parent: world, child: a", "parent: h, child: a");
+  text = replaced(text, "parent: world, child: c", "parent: h, child: c");
+  text = replaced(text, "bodies:\n", "bodies:\n  h: {type: rigid, mass: 50, inertia: [5, 5, 5, 0, 0, 0]}\n");
+  return replaced(text, "hinges:\n", "hinges:\n  H: {" + hinge + ", parent: world, child: h}\n");
+}
+
+/// What carries a loop moves it as a whole and opens no way: its column of J is the gap that is left, or rounding.
+TEST(SingularLoops, OfWhatIsCarriedAreThoseOfWhatHangsOnTheWorld) {
+  for (const char* hub :
+       {"type: revolute, axis: [0, 0, 1]", "type: free", "type: spherical", "type: planar, axis: [0, 0, 1]"})
+    for (const char* name : {"dopri5", "dop853", "radau"})
+      for (const double rtol : {1e-4, 1e-6, 1e-9})
+        for (const double more : {0.0, 1e-4}) {
+          std::ostringstream integrator;
+          integrator << "{name: " << name << ", rtol: " << rtol << ", atol: " << 0.01 * rtol << "}";
+          for (const double coupler : {2.0, 1.6}) {
+            // A parallelogram; a four-bar whose crank turns round and whose other links never are in line with it.
+            const std::string bar = coupler == 2 ? four_bar_of(1, 2, 1, 2 * (1 + more), 2, 1, integrator.str())
+                                                 : four_bar_of(0.6, coupler, 1.5, 1.7, 2, 1, integrator.str());
+            const Made made(on_hub(bar, hub));
+            const RunSummary summary = run(made, 2);
+            EXPECT_EQ(summary.status, coupler == 2 && more == 0 ? RunStatus::singular : RunStatus::completed)
+                << hub << ", " << integrator.str() << ", " << coupler << ", " << more << ": " << summary.message;
+          }
+        }
+}
+
+/// A four-bar with more bodies and hinges; `ground` carries it.
+std::string four_bar_beside(const std::string& bodies, const std::string& hinges, const std::string& ground) {
+  std::string text = four_bar(rigid_coupler, "{name: dop853, rtol: 1e-6, atol: 1e-6}");
+  text = replaced(text, "parent: world, child: crank", "parent: " + ground + ", child: crank");
+  text = replaced(text, "parent: world, child: rocker", "parent: " + ground + ", child: rocker");
+  return replaced(text, "hinges:\n", bodies + "hinges:\n" + hinges);
+}
+
+/// How far the loops of a scene say that its hinges turn in a tenth of a second at a rate of `hinge`, all else at rest;
+/// where it has one coordinate that turns as far.
+double turned_by(const Made& made, const std::string& hinge, double rate) {
+  constexpr double seconds = 0.1;
+  const Layout& layout = made.scene.model->layout();
+  const Slot& slot = *layout.hinge(hinge);
+  std::vector<double> before = made.scene.initial.y;
+  std::fill_n(before.begin() + static_cast<std::ptrdiff_t>(layout.positions), layout.speeds, 0.0);
+  std::fill_n(before.begin() + static_cast<std::ptrdiff_t>(layout.positions + slot.speed), slot.speeds, rate);
+  std::vector<double> after = before;
+  if (slot.positions == 1) after[slot.position] += rate * seconds;
+  return loops_of(*made.equations).turned(before, after, seconds);
+}
+
+std::vector<double> rows_at(const Made& made, const std::vector<double>& y) {
+  const ClosedLoops& loops = loops_of(*made.equations);
+  std::vector<double> gaps(loops.closing_equations()), rates(gaps.size()),
+      J(gaps.size() * made.scene.model->layout().speeds);
+  Work work = made.equations->make_work();
+  loops.see(y, gaps, rates, J, work);
+  return J;
+}
+
+constexpr const char* wheel_of_loops = ": {type: rigid, mass: 0.2, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}\n";
+
+/// Steps are looked into by what the closing equations depend on: rotors may turn as fast as they like.
+TEST(SingularLoops, AreNotLookedForWhereRotorsTurn) {
+  const Made made(four_bar_beside(std::string("  rotor") + wheel_of_loops + "  flywheel" + wheel_of_loops,
+                                  "  spin: {type: revolute, axis: [0, 0, 1], parent: world, child: rotor}\n"
+                                  "  axle: {type: revolute, axis: [1, 0, 1], parent: coupler.tip, child: flywheel}\n",
+                                  "world"));
+  for (const char* rotor : {"spin", "axle"}) {
+    EXPECT_EQ(turned_by(made, rotor, 3e5), 0) << rotor;
+    std::vector<double> y = made.scene.initial.y;
+    y[made.scene.model->layout().hinge(rotor)->position] += 2;
+    EXPECT_EQ(rows_at(made, y), rows_at(made, made.scene.initial.y)) << rotor;
+  }
+  for (const char* link : {"motor", "elbow", "pivot"}) EXPECT_NEAR(turned_by(made, link, 30), 3, 1e-12) << link;
+  const RunSummary summary = run(made, 0.2);
+  EXPECT_EQ(summary.status, RunStatus::completed) << summary.message;
+}
+
+TEST(SingularLoops, AreNotLookedForWhereACraftSpinsThatCarriesAllOfALoop) {
+  for (const char* hinge : {"free", "spherical", "revolute, axis: [0, 1, 1]"}) {
+    const Made made(four_bar_beside("  craft: {type: rigid, mass: 9, inertia: [4, 5, 6, 0, 0, 0]}\n",
+                                    std::string("  float: {type: ") + hinge + ", parent: world, child: craft}\n",
+                                    "craft"));
+    EXPECT_EQ(turned_by(made, "float", 3e5), 0) << hinge;
+    EXPECT_NEAR(turned_by(made, "pivot", 30), 3, 1e-12) << hinge;
+  }
+}
+
+/// What carries one loop may be a link of another.
+TEST(SingularLoops, AreLookedForWhereACraftTurnsThatAConstraintHoldsToo) {
+  std::string text =
+      four_bar_beside("  craft: {type: rigid, mass: 9, inertia: [4, 5, 6, 0, 0, 0]}\n",
+                      "  float: {type: revolute, axis: [0, 0, 1], parent: world, child: craft}\n", "craft");
+  text = replaced(text, "constraints:\n",
+                  "constraints:\n  held: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: world, b: craft}\n");
+  EXPECT_NEAR(turned_by(Made(text), "float", 30), 3, 1e-12);
 }
 
 }  // namespace
