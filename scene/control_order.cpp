@@ -280,9 +280,15 @@ std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Chec
       loads.erase(hopeless);
       continue;
     }
+    const std::string& first = loads.front().name;
+    const std::string way = circle(loads);
     checker.key_error(
-        "/loads/" + loads.front().name,
-        fmt::format("the loop {} is algebraic: each of these loads needs what another one gives", circle(loads)));
+        "/loads/" + first,
+        way == first + " -> " + first
+            ? fmt::format("it measures itself, which makes an algebraic loop; if an output '{}' is meant, "
+                          "give the load another name",
+                          first)
+            : fmt::format("the loop {} is algebraic: each of these loads needs what another one gives", way));
     break;
   }
   return ordered;
