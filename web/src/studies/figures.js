@@ -1,7 +1,8 @@
 // What a command says in words, and its curves: names switch them off, the pointer is told the nearest point.
 import { dashes } from '../data.js';
+import { number } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, draw, legend, number, shapes, tell } from './figure.js';
+import { Figure, draw, legend, shapes, tell } from './figure.js';
 
 export class Figures {
   constructor(holder, data) {

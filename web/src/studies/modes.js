@@ -1,8 +1,9 @@
 // Frequencies and damping over what is swept (a Campbell diagram), or of one configuration; the shape of the mode that is
 // clicked.
 import { dashes } from '../data.js';
+import { number } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, draw, legend, number, table_of } from './figure.js';
+import { Figure, draw, legend, table_of } from './figure.js';
 
 // Diagrams show Im λ, the damped frequency; tables, as modes.csv, the natural one, |λ|. Of equal blades only the first is known.
 const hertz = m => m.hertz;

@@ -1,6 +1,7 @@
 // Many cases: how results are distributed, what they depend on, and which cases failed.
+import { number, number_within } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, answers, draw, number, number_within, scale_of, table_of, tell } from './figure.js';
+import { Figure, answers, draw, scale_of, table_of, tell } from './figure.js';
 
 const most_told = 6;  // results, in words
 const short = name => name.replace(/^peak\.|^final\./, '');

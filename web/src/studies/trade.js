@@ -1,6 +1,7 @@
 // Error against cost: each model a mark, the Pareto front a line; the model that is clicked in full.
+import { number } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, legend, number, table_of } from './figure.js';
+import { Figure, legend, table_of } from './figure.js';
 
 const modes_of = p => p.modes === 0 ? "the scene's modes" : `${p.modes} ${p.modes === 1 ? 'mode' : 'modes'}${p.family ? ` (${p.family})` : ''}`;
 const name_of = p => `${p.formulation}, ${modes_of(p)}, ${p.integrator} at ${power(p.tolerance)}`;
