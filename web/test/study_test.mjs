@@ -54,6 +54,7 @@ async function check_trade(browser, folder, run, troubles) {
   const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
   const marks = page.locator('.figures .mark');
   assert.equal(await marks.count(), done.length);
+  assert.deepEqual(await page.$$eval('.answer li', all => all.map(e => /^Within ([\d.]+ %):/.exec(e.textContent)[1])), ['10 %', '1 %', '0.1 %']);
   const at = await marks.evaluateAll(all => all.map(m => /translate\(([-\d.]+) ([-\d.]+)\)/.exec(m.getAttribute('transform')).slice(1).map(Number)));
   done.forEach((p, i) => done.forEach((q, j) => {
     if (q.cpu_seconds > 1.05 * p.cpu_seconds) assert.ok(at[j][0] > at[i][0], 'dearer is further to the right');
@@ -78,10 +79,24 @@ async function check_trade(browser, folder, run, troubles) {
   await shot(page, 'trade-dark');
   assert.ok((await page.pdf()).length > 20000, 'it prints');
   await page.close();
+  await check_asked(browser, folder, run, troubles);
   // The command of the page is the model's run.
   const { command, steps } = page_data(join(out, 'report.html')).points.at(-1);
   execSync(`${command.replace('withy', withy)} --out ${join(folder, 'point')}`, { stdio: 'ignore' });
   assert.equal(JSON.parse(readFileSync(join(folder, 'point/run.json'))).steps, steps);
+}
+
+// The errors that are asked for are those of the command and of the page.
+async function check_asked(browser, folder, run, troubles) {
+  const out = join(folder, 'asked');
+  const said = run('trade', join(scenes, 'driven-arm.yaml'), '--set', 'time.end=0.3', '--modes', '1,2', '--tolerances', '1e-4', '--accuracy', '5%,0.000001%', '--out', out);
+  assert.match(said, /within 5 % /);
+  const { points, cheapest } = page_data(join(out, 'report.html'));
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles), lines = await page.$$eval('.answer li', all => all.map(e => e.textContent));
+  assert.equal(lines.length, 2);
+  assert.ok(lines[0].startsWith(`Within 5 %: ${points[cheapest[0].point].formulation}, `), lines[0]);
+  assert.match(lines[1], /^Within 1\.00e-6 %: none of these models$/);
+  await page.close();
 }
 
 // Branches are the columns of modes.csv; lines of the rate rise by one rate a rate.

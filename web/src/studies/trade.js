@@ -9,7 +9,6 @@ const power = v => v < 1e-2 ? v.toExponential() : `${v}`;
 const milliseconds = p => 1e3 * p.cpu_seconds;
 const percent = p => 100 * p.relative_error;
 const done = p => p.status === 'completed';
-const floor = 1e-12; // of errors [%] on a logarithmic axis
 
 export class Trade {
   constructor(holder, data) {
@@ -30,11 +29,13 @@ export class Trade {
   }
 
   write_answer() {
-    for (const over of this.overs) {
-      const all = this.data.points.filter(p => p.over.join(' ') === over && done(p)), list = element('ul');
-      for (const limit of [10, 1, 0.1]) {
-        const best = all.filter(p => percent(p) <= limit).sort((a, b) => a.cpu_seconds - b.cpu_seconds)[0];
-        list.append(element('li', `Within ${limit} %: ${best ? `${name_of(best)} – ${number(milliseconds(best))} ms, error ${number(percent(best))} %` : 'none of these models'}`));
+    // What the command printed: errors of one's own, or the usual ones.
+    const { cheapest, points } = this.data;
+    for (const over of new Set(cheapest.map(c => c.over))) {
+      const list = element('ul');
+      for (const { within, point } of cheapest.filter(c => c.over === over)) {
+        const best = points[point];
+        list.append(element('li', `Within ${number(100 * within)} %: ${best ? `${name_of(best)} – ${number(milliseconds(best))} ms, error ${number(percent(best))} %` : 'none of these models'}`));
       }
       this.answer.append(element('p', over ? `The cheapest at ${over}` : 'The cheapest'), list);
     }
