@@ -24,6 +24,16 @@ function check_log_ticks() {
   assert.deepEqual(told(1, 1e4), ['1', '10', '100', '1000', '10000']);
 }
 
+// What is zero stands below all decades, where anything is.
+function check_zeros() {
+  const scale = values => scale_of(values, { log: true, from: 400, to: 0, zeros: true }), told = at => at.ticks.map(([, name]) => name);
+  const some = scale([0, 0.05, 3]);
+  assert.deepEqual(told(some), ['0', '0.05', '0.1', '0.2', '0.5', '1', '2']);
+  assert.ok(some(0) < 400 && some(0.05) < some(0) - 20 && some(3) > 0);
+  assert.ok(!told(scale([0.05, 3])).includes('0'));
+  assert.deepEqual(told(scale([0, 0])), ['0']);
+}
+
 // Of a name that is too long the end stands, and its value whole.
 function check_names() {
   assert.equal(name_within('bodies.cart.mass', ' = 0.8966', 42), 'bodies.cart.mass = 0.8966');
@@ -392,6 +402,7 @@ async function check_inverse(browser, folder, run, troubles) {
 }
 
 check_log_ticks();
+check_zeros();
 check_names();
 check_names_of_lines();
 await in_browser(withy, chromium, async (browser, folder, run) => {

@@ -10,7 +10,11 @@ export function draw(name, attributes = {}, text) {
 }
 
 // A scale from data to pixels with its ticks.
-export function scale_of(values, { log = false, from, to, include = [], room = 0.05, across = to > from }) {
+// zeros: of decades, what is zero has a place of its own at the beginning, where anything is
+const place_of_zero = 0.05, beyond_zero = 0.13; // parts of the axis
+export function scale_of(values, { log = false, from, to, include = [], room = 0.05, across = to > from, zeros = false }) {
+  const begin = from, none = zeros && values.includes(0);
+  if (none) from += beyond_zero * (to - from);
   const shown = values.filter(v => Number.isFinite(v) && (!log || v > 0));
   const tell = v => log ? Math.log10(v) : v;
   let low = Infinity, high = -Infinity;
@@ -22,9 +26,10 @@ export function scale_of(values, { log = false, from, to, include = [], room = 0
   const [least, most] = ends_of(low, high, room, log ? 1 : undefined), from_include = include.length && low < high && Math.min(...include.map(tell)) <= low;
   if (!from_include) low = least;
   high = most;
-  const at = v => from + (tell(v) - low) / (high - low) * (to - from), value = v => (log ? 10 ** v : v);
+  const at = v => (none && v === 0 ? begin + place_of_zero * (to - begin) : from + (tell(v) - low) / (high - low) * (to - from)), value = v => (log ? 10 ** v : v);
   const length = Math.abs(to - from);
-  at.ticks = axis_ticks(value(low), value(high), { length, apart: length > 300 ? 80 : 50, log, across });
+  at.ticks = none && !shown.length ? [] : axis_ticks(value(low), value(high), { length, apart: length > 300 ? 80 : 50, log, across });
+  if (none) at.ticks.unshift([0, '0']);
   at.low = low;
   at.high = high;
   return at;

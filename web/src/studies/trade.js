@@ -40,7 +40,7 @@ export class Trade {
       this.answer.append(element('p', over ? `The cheapest at ${over}` : 'The cheapest'), list);
     }
     const failed = this.data.points.filter(p => !done(p)).length;
-    this.answer.append(element('p', `${this.data.points.length} models${failed ? `, ${failed} of which did not come to their end` : ''}. Errors are the greatest of all outputs, each in % of its own range. An error below that of the reference, the dotted line, tells no difference.`, { class: 'soft' }));
+    this.answer.append(element('p', `${this.data.points.length} models${failed ? `, ${failed} of which did not come to their end` : ''}. Errors are the greatest of all outputs, each in % of its own range.${Object.values(this.data.references).some(r => r.relative_error > 0) ? ' An error below that of the reference, the dotted line, tells no difference.' : ''}`, { class: 'soft' }));
   }
 
   table() {
@@ -81,19 +81,18 @@ export class Trade {
   figure(over) {
     const hidden = p => this.formulations.find(f => f.name === p.formulation).hidden || this.integrators.find(i => i.name === p.integrator).hidden;
     const all = this.data.points.filter(p => p.over.join(' ') === over && done(p)), shown = all.filter(p => !hidden(p));
-    const reference = this.data.references[over], least = reference ? Math.max(100 * reference.relative_error, floor) : null;
-    const error = p => Math.max(percent(p), floor);
-    const figure = new Figure({ title: over || null, height: this.overs.length > 1 ? 360 : 460, x: { label: 'CPU time [ms]', log: true, values: all.map(milliseconds) }, y: { label: 'error [% of range]', log: true, values: [...all.map(error), ...(least ? [least] : [])] } });
+    const reference = this.data.references[over], least = reference?.relative_error > 0 ? 100 * reference.relative_error : null;
+    const figure = new Figure({ title: over || null, height: this.overs.length > 1 ? 360 : 460, x: { label: 'CPU time [ms]', log: true, values: all.map(milliseconds) }, y: { label: 'error [% of range]', log: true, zeros: true, values: [...all.map(percent), ...(least ? [least] : [])] } });
     if (least) {
       const y = figure.y(least);
       figure.marks.append(Object.assign(figure.line([[10 ** figure.x.low, least], [10 ** figure.x.high, least]], { class: 'limit' })));
       figure.text(figure.width - figure.right - 6, y - 5, 'error of the reference', { 'text-anchor': 'end', class: 'soft' });
     }
     const front = all.filter(p => p.pareto).sort((a, b) => a.cpu_seconds - b.cpu_seconds);
-    figure.line(front.map(p => [milliseconds(p), error(p)]), { class: 'front' });
+    figure.line(front.map(p => [milliseconds(p), percent(p)]), { class: 'front' });
     for (const p of shown) {
       const f = this.formulations.find(o => o.name === p.formulation), i = this.integrators.find(o => o.name === p.integrator);
-      p.mark = figure.mark(milliseconds(p), error(p), i.index, { fill: p.pareto ? f.color : 'none', stroke: f.color, 'stroke-width': 1.6 }, () => [name_of(p), `error ${number(percent(p))} %, CPU time ${number(milliseconds(p))} ms`, p.pareto ? 'on the front: nothing is both cheaper and more exact' : 'click for all of it'], () => this.choose(p));
+      p.mark = figure.mark(milliseconds(p), percent(p), i.index, { fill: p.pareto ? f.color : 'none', stroke: f.color, 'stroke-width': 1.6 }, () => [name_of(p), `error ${number(percent(p))} %, CPU time ${number(milliseconds(p))} ms`, p.pareto ? 'on the front: nothing is both cheaper and more exact' : 'click for all of it'], () => this.choose(p));
     }
     return figure.element;
   }
