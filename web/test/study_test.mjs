@@ -391,6 +391,28 @@ async function check_figures(browser, folder, run, troubles) {
   await page.close();
 }
 
+// Where nothing acts there is a sentence, and no axis of numbers that are none.
+async function check_nothing(browser, folder, run, troubles) {
+  const file = join(folder, 'still.yaml');
+  writeFileSync(file, `format: withy/1
+time: {end: 1, output: 0.1}
+bodies: {b: {type: beam, length: 1, mass_per_length: 1, bending_z: {stiffness: 0.5, modes: 2, family: clamped-free}}}
+hinges: {j: {type: revolute, axis: [0, 1, 0], parent: world, child: b}}
+`);
+  run('terms', file, '--out', join(folder, 'still-terms'));
+  const page = await opened(browser, join(folder, 'still-terms/report.html'), 'theme=light', troubles);
+  assert.equal(await page.locator('.study-figure').count(), 0);
+  assert.deepEqual(await page.$$eval('.figures p', all => all.map(e => e.textContent)), ['hinges', 'bending'].map(name => `${name} [N/sqrt(kg)]: zero throughout, but for rounding.`));
+  await page.close();
+  // Errors of zero stand at 0, and there is no line of a reference that is off by nothing.
+  run('trade', file, '--modes', '1,2', '--tolerances', '1e-4', '--integrators', 'dopri5', '--out', join(folder, 'still-trade'));
+  const trade = await opened(browser, join(folder, 'still-trade/report.html'), 'theme=light', troubles);
+  const names = await trade.$$eval('.figures .axes text', all => all.map(e => e.textContent));
+  assert.ok(names.includes('0') && !names.some(name => /^\d+e/.test(name)), names.join());
+  assert.doesNotMatch(await text(trade, '#study'), /error of the reference|dotted line/);
+  await trade.close();
+}
+
 // What motors have to give is on the page of the run that tells it.
 async function check_inverse(browser, folder, run, troubles) {
   const out = join(folder, 'inverse');
@@ -407,7 +429,7 @@ check_names();
 check_names_of_lines();
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
-  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_one_at_a_time, check_figures]) await check(browser, folder, run, troubles);
+  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_one_at_a_time, check_figures, check_nothing]) await check(browser, folder, run, troubles);
   assert.deepEqual(troubles, []);
   console.log('the pages of studies show what their files say');
 });

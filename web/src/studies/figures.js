@@ -31,6 +31,7 @@ export class Figures {
   }
 
   figure(panel, hidden, colours) {
+    if (!panel.curves.some(c => c.y.some(v => v != null && (!panel.log_y || v > 0)))) return element('p', `${panel.y}: ${panel.log_y ? 'zero throughout, but for rounding' : 'no values'}.`, { class: 'soft' });
     const shown = panel.curves.filter(c => !hidden.has(c.pen)), [low, high] = panel.range;
     const within = v => v >= low && v <= high;
     const figure = new Figure({
