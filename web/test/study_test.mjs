@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { execSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
+import { number, number_among, number_within } from '../src/numbers.js';
 import { scale_of } from '../src/studies/figure.js';
 import { name_within, names_beside } from '../src/studies/sweep.js';
 import { in_browser, opened, says, text } from './browser.mjs';
@@ -22,6 +23,16 @@ function check_log_ticks() {
   assert.deepEqual(told(2.1, 4.8), ['2.5', '3.0', '3.5', '4.0', '4.5', '5.0']);
   assert.deepEqual(told(1, 50), ['1', '2', '5', '10', '20', '50']);
   assert.deepEqual(told(1, 1e4), ['1', '10', '100', '1000', '10000']);
+}
+
+// Numbers of a narrow range are told apart, others have four digits.
+function check_numbers() {
+  assert.deepEqual([0.8113306, 0.8113613].map(number_within(0.8113306, 0.8113613)), ['0.8113306', '0.8113613']);
+  assert.deepEqual([2.41e-18, 2.4100123e-18, 0, null].map(number_within(2.41e-18, 2.4100123e-18)), ['2.41e-18', '2.4100123e-18', '0', '–']);
+  assert.deepEqual([1, 12345].map(number_within(1, 12345)), ['1', '12350']);
+  assert.deepEqual([1.9999, 2].map(number_among([1.9999, NaN, 2], 5, true)), ['1.9999000', '2.0000000']);
+  assert.equal(number_within(7e32, 7e32 * (1 + 1e-15))(7e32), '7.00e32', 'rounding tells nothing apart');
+  assert.deepEqual([number(1e-4), number(123456), number(0.5, 5, true), number(0), number(NaN)], ['1.00e-4', '1.23e5', '0.50000', '0', '–']);
 }
 
 // What is zero stands below all decades, where anything is.
@@ -299,6 +310,19 @@ async function check_sweep(browser, folder, run, troubles) {
   await page.close();
 }
 
+// Where all cases lie close together both ends of an axis are told apart, and so are the numbers of notes and tables.
+async function check_narrow(browser, folder, run, troubles) {
+  const out = join(folder, 'narrow');
+  run('sweep', 'run', write_plan(folder, 'narrow.yaml', 'vary:\n  bodies.link1.mass_per_length: {uniform: {from: 1.33997, to: 1.34003}}\ncases: 6\n'), '--out', out);
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles), { columns } = page_data(join(out, 'report.html'));
+  const ends = await page.$$eval('.pairs text:not(.name)', all => all.map(e => e.textContent));
+  for (const c of columns) for (const v of [c.least, c.greatest]) assert.equal(ends.filter(e => Math.abs(e - v) < 2e-3 * (c.greatest - c.least)).length, 2, `${c.name}: ${v} of ${ends}`);
+  const tables = await page.$$eval('table.rows tr', rows => rows.map(r => [...r.children].map(e => e.textContent))), [head] = tables;
+  for (const row of tables.slice(1)) assert.notEqual(row[head.indexOf('least')], row[head.indexOf('greatest')], row.join());
+  await shot(page, 'narrow-light');
+  await page.close();
+}
+
 // Bars are the rows of indices.csv.
 async function check_indices(browser, folder, run, troubles) {
   const out = join(folder, 'sobol');
@@ -425,11 +449,12 @@ async function check_inverse(browser, folder, run, troubles) {
 
 check_log_ticks();
 check_zeros();
+check_numbers();
 check_names();
 check_names_of_lines();
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
-  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_one_at_a_time, check_figures, check_nothing]) await check(browser, folder, run, troubles);
+  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_narrow, check_indices, check_one_at_a_time, check_figures, check_nothing]) await check(browser, folder, run, troubles);
   assert.deepEqual(troubles, []);
   console.log('the pages of studies show what their files say');
 });

@@ -1,6 +1,6 @@
 // What a command says in words, and its curves: names switch them off, the pointer is told the nearest point.
 import { dashes } from '../data.js';
-import { number } from '../numbers.js';
+import { number_among } from '../numbers.js';
 import { element } from '../words.js';
 import { Figure, draw, legend, shapes, tell } from './figure.js';
 
@@ -57,7 +57,7 @@ export class Figures {
   // The point of a curve that is nearest to the pointer.
   ask(figure, panel, known) {
     const ring = figure.svg.appendChild(draw('circle', { r: 5, fill: 'none', stroke: 'currentColor', visibility: 'hidden' }));
-    const { svg } = figure;
+    const { svg } = figure, told_x = number_among(panel.curves.flatMap(c => c.x)), told_y = new Map(panel.curves.map(c => [c, number_among(c.y)]));
     svg.addEventListener('pointermove', event => {
       const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
       let best = null, least = 900;
@@ -70,7 +70,7 @@ export class Figures {
       const [x, y, curve, i] = best;
       ring.setAttribute('cx', x);
       ring.setAttribute('cy', y);
-      tell([curve.notes?.[i] ?? curve.name ?? panel.y, `${panel.x}: ${number(curve.x[i])}`, `${panel.y}: ${number(curve.y[i])}`], event.clientX, event.clientY);
+      tell([curve.notes?.[i] ?? curve.name ?? panel.y, `${panel.x}: ${told_x(curve.x[i])}`, `${panel.y}: ${told_y.get(curve)(curve.y[i])}`], event.clientX, event.clientY);
     });
     svg.addEventListener('pointerleave', () => { ring.setAttribute('visibility', 'hidden'); tell(null); });
   }

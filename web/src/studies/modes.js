@@ -1,7 +1,7 @@
 // Frequencies and damping over what is swept (a Campbell diagram), or of one configuration; the shape of the mode that is
 // clicked.
 import { dashes } from '../data.js';
-import { number } from '../numbers.js';
+import { number, number_among } from '../numbers.js';
 import { element } from '../words.js';
 import { Figure, draw, legend, table_of } from './figure.js';
 
@@ -199,7 +199,8 @@ export class Modes {
   }
 
   about(b, m) {
-    return [b.name, this.swept ? `${this.data.label} ${number(m.value)}` : '', natural(m) || !m.growth ? `${number(natural(m))} Hz, ${number(2 * Math.PI * natural(m))} rad/s` : '', m.hertz === 0 && m.growth ? `growth ${number(m.growth)}/s` : '', m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
+    const all = b.at.filter(Boolean).map(natural), in_hertz = number_among(all), in_radians = number_among(all.map(f => 2 * Math.PI * f));
+    return [b.name, this.swept ? `${this.data.label} ${number_among(this.data.values)(m.value)}` : '', natural(m) || !m.growth ? `${in_hertz(natural(m))} Hz, ${in_radians(2 * Math.PI * natural(m))} rad/s` : '', m.hertz === 0 && m.growth ? `growth ${number(m.growth)}/s` : '', m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
   }
 
   // Where the kinetic energy of the shape is, and how like the first shape of the branch it is.

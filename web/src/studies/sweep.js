@@ -1,10 +1,12 @@
 // Many cases: how results are distributed, what they depend on, and which cases failed.
-import { number, number_within } from '../numbers.js';
+import { number, number_among, number_within } from '../numbers.js';
 import { element } from '../words.js';
 import { Figure, answers, draw, scale_of, table_of, tell } from './figure.js';
 
 const most_told = 6;  // results, in words
 const short = name => name.replace(/^peak\.|^final\./, '');
+// Numbers of a column.
+const told_of = column => number_within(column.least, column.greatest);
 
 export class Sweep {
   constructor(holder, data) {
@@ -28,7 +30,7 @@ export class Sweep {
     if (failed > 0) said.append(element('p', `${number(100 * failed_share.value)} % failed; with 95 % confidence ${number(100 * failed_share.low)} to ${number(100 * failed_share.high)} %, were they drawn at random.`, { class: 'message' }));
     if (this.data.counted < cases) said.append(element('p', `Distributions and envelopes are of ${this.data.counted} cases, taken at random; table.csv has all.`));
     for (const c of this.results.slice(0, most_told)) {
-      const told = number_within(c.least, c.greatest);
+      const told = told_of(c);
       said.append(element('p', `${c.name}: half of the cases are below ${told(c.median)}, 5 % below ${told(c.p05)}, 5 % above ${told(c.p95)}; least ${told(c.least)}, greatest ${told(c.greatest)}.`, { class: 'soft' }));
     }
     const note = text => said.append(element('p', text, { class: 'soft' }));
@@ -66,7 +68,7 @@ export class Sweep {
 
   histograms(colours) {
     return [...this.results, ...this.varied].map(c => {
-      const { bins, least, greatest } = c, width = (greatest - least) / bins.length || 1;
+      const { bins, least, greatest } = c, told = told_of(c), width = (greatest - least) / bins.length || 1;
       const figure = new Figure({ title: c.name, width: 420, height: 250, x: { label: c.name, values: [least, greatest], room: 0.02 }, y: { label: 'cases', values: bins, include: [0], room: c.role === 'result' ? room_of_names : 0.05 } });
       bins.forEach((count, i) => {
         if (!(count > 0)) return;
@@ -74,7 +76,7 @@ export class Sweep {
         const one = !(greatest > least), x0 = one ? figure.x(least) - 10 : figure.x(least + i * width);
         const x1 = one ? x0 + 21 : figure.x(least + (i + 1) * width), y = figure.y(count);
         const bar = draw('rect', { x: x0, y, width: Math.max(1, x1 - x0 - 1), height: Math.max(0, figure.y(0) - y), fill: c.role === 'result' ? colours[0] : colours[6] });
-        answers(bar, () => [`${count} cases`, one ? number(least) : `${number(least + i * width)} to ${number(least + (i + 1) * width)}`]);
+        answers(bar, () => [`${count} cases`, one ? told(least) : `${told(least + i * width)} to ${told(least + (i + 1) * width)}`]);
         figure.marks.append(bar);
       });
       if (c.role === 'result') {
@@ -104,7 +106,8 @@ export class Sweep {
   }
   history({ name, of, rows }, colours) {
     const shown = rows.filter(r => r[2] != null);
-    const at = Object.entries(of).map(([path, value]) => `${path} = ${Number.isFinite(+value) ? number(+value) : value}`).join(', ');
+    const at = Object.entries(of).map(([path, value]) => `${path} = ${Number.isFinite(+value) ? number_among(this.data.histories.map(h => +h.of[path]))(+value) : value}`).join(', ');
+    const told = number_among(shown.flatMap(r => [r[2], r[8]])), told_time = number_among(rows.map(r => r[0]));
     const figure = new Figure({ title: at || null, width: 420, height: 300, x: { label: 't [s]', values: rows.map(r => r[0]), room: 0.01 }, y: { label: name, values: shown.flatMap(r => [r[2], r[8]]) } });
     [[2, 8, 0.14], [3, 7, 0.2], [4, 6, 0.3]].forEach(([low, high, opacity]) => {
       const there = shown.map(r => `${figure.x(r[0])} ${figure.y(r[high])}`), back = [...shown].reverse().map(r => `${figure.x(r[0])} ${figure.y(r[low])}`);
@@ -118,7 +121,7 @@ export class Sweep {
       if (!r) return;
       for (const end of ['x1', 'x2']) line.setAttribute(end, figure.x(r[0]));
       line.setAttribute('visibility', 'visible');
-      tell([`t = ${number(r[0])} s, ${r[1]} cases`, `median ${number(r[5])}, 25 to 75 % ${number(r[4])} to ${number(r[6])}`, `5 to 95 % ${number(r[3])} to ${number(r[7])}`, `least ${number(r[2])}, greatest ${number(r[8])}`], event.clientX, event.clientY);
+      tell([`t = ${told_time(r[0])} s, ${r[1]} cases`, `median ${told(r[5])}, 25 to 75 % ${told(r[4])} to ${told(r[6])}`, `5 to 95 % ${told(r[3])} to ${told(r[7])}`, `least ${told(r[2])}, greatest ${told(r[8])}`], event.clientX, event.clientY);
     });
     svg.addEventListener('pointerleave', () => { line.setAttribute('visibility', 'hidden'); tell(null); });
     return figure.element;
@@ -127,6 +130,7 @@ export class Sweep {
   // Over each number that varies: least, 5 %, median, 95 % and greatest of the cases near each of its values.
   envelopes(colours, result) {
     if (!result) return [];
+    const told = told_of(result);
     const made = this.varied.map(axis => {
       const levels = this.data.envelopes[axis.name]?.[result.name];
       if (!levels || levels.length < 2) return null;
@@ -138,7 +142,7 @@ export class Sweep {
       band('least', 'greatest', 0.16);
       band('p05', 'p95', 0.3);
       figure.line(levels.map(l => [l.at, l.median]), { stroke: colours[0], 'stroke-width': 2 });
-      for (const l of levels) figure.mark(l.at, l.median, 0, { fill: colours[0], small: true }, () => [`${axis.name} about ${number(l.at)}`, `median ${number(l.median)}, 5 % ${number(l.p05)}, 95 % ${number(l.p95)}`, `least ${number(l.least)}, greatest ${number(l.greatest)}, ${l.count} cases`]);
+      for (const l of levels) figure.mark(l.at, l.median, 0, { fill: colours[0], small: true }, () => [`${axis.name} about ${told_of(axis)(l.at)}`, `median ${told(l.median)}, 5 % ${told(l.p05)}, 95 % ${told(l.p95)}`, `least ${told(l.least)}, greatest ${told(l.greatest)}, ${l.count} cases`]);
       return figure.element;
     }).filter(Boolean);
     const drawn = Object.values(this.data.envelopes).reduce((n, of_axis) => n + Object.keys(of_axis).length, 0);
@@ -208,7 +212,10 @@ export class Sweep {
   }
 
   matrix(columns, colours) {
-    const n = columns.length, cell = Math.max(110, Math.min(250, 840 / Math.max(1, n))), left = 64, bottom = 46, size = n * cell;
+    const n = columns.length, cell = Math.max(110, Math.min(250, 840 / Math.max(1, n))), size = n * cell;
+    // Ends of axes stand beside each other below a cell where there is room, else below each other.
+    const ends = new Map(columns.map(c => [c, [c.least, c.greatest].map(told_of(c))])), longest = Math.max(1, ...[...ends.values()].flat().map(e => e.length));
+    const left = 22 + Math.max(42, 7 * longest), lines = 14 * longest > cell - 16 ? 2 : 1, bottom = 34 + 12 * lines;
     const svg = draw('svg', { viewBox: `0 0 ${left + size + 6} ${size + bottom + 6}`, role: 'img', 'aria-label': 'Scatter of every pair', style: `max-width: ${left + size + 6}px` });
     const place = name => this.data.columns.findIndex(c => c.name === name);
     const scales = columns.map(c => scale_of([c.least, c.greatest], { from: 6, to: cell - 6, room: 0 }));
@@ -218,12 +225,12 @@ export class Sweep {
       if (i === j) this.own(g, x, cell, colours);
       else this.points(g, [place(x.name), scales[j]], [place(y.name), scales[i]], cell, colours, [x, y]);
       if (i === n - 1) {
-        for (const v of [x.least, x.greatest]) g.append(draw('text', { x: v === x.least ? 0 : cell - 6, y: cell + 10, 'text-anchor': v === x.least ? 'start' : 'end' }, number(v)));
-        g.append(draw('text', { x: cell / 2, y: cell + 26, 'text-anchor': 'middle', class: 'name' }, fitted(short(x.name), cell)));
+        ends.get(x).forEach((name, k) => g.append(draw('text', { x: k ? cell - 6 : 0, y: cell + 10 + (k ? 12 * (lines - 1) : 0), 'text-anchor': k ? 'end' : 'start' }, name)));
+        g.append(draw('text', { x: cell / 2, y: cell + 14 + 12 * lines, 'text-anchor': 'middle', class: 'name' }, fitted(short(x.name), cell)));
       }
       if (j === 0) {
-        for (const v of [y.least, y.greatest]) g.append(draw('text', { x: -6, y: v === y.least ? cell - 6 : 11, 'text-anchor': 'end' }, number(v)));
-        g.append(draw('text', { x: -50, y: cell / 2, 'text-anchor': 'middle', class: 'name', transform: `rotate(-90 -50 ${cell / 2})` }, fitted(short(y.name), cell)));
+        ends.get(y).forEach((name, k) => g.append(draw('text', { x: -6, y: k ? 11 : cell - 6, 'text-anchor': 'end' }, name)));
+        g.append(draw('text', { x: 14 - left, y: cell / 2, 'text-anchor': 'middle', class: 'name', transform: `rotate(-90 ${14 - left} ${cell / 2})` }, fitted(short(y.name), cell)));
       }
       svg.append(g);
     }));
@@ -261,7 +268,7 @@ export class Sweep {
       if (!found) return tell(null);
       ring.setAttribute('cx', found[0]);
       ring.setAttribute('cy', found[1]);
-      tell([`case ${found[2].case}`, `${x.name} ${number(found[2].values[ix])}`, `${y.name} ${number(found[2].values[iy])}`], event.clientX, event.clientY);
+      tell([`case ${found[2].case}`, `${x.name} ${told_of(x)(found[2].values[ix])}`, `${y.name} ${told_of(y)(found[2].values[iy])}`], event.clientX, event.clientY);
     });
     g.addEventListener('pointerleave', () => { ring.setAttribute('visibility', 'hidden'); tell(null); });
     g.addEventListener('click', event => { const found = nearest(event); if (found) this.choose(found[2]); });
@@ -271,14 +278,17 @@ export class Sweep {
     const table = element('table');
     this.data.columns.forEach((c, i) => {
       const line = element('tr');
-      line.append(element('th', c.name, { scope: 'row' }), element('td', row.values[i] == null ? '–' : typeof row.values[i] === 'number' ? number(row.values[i]) : `${row.values[i]}`));
+      line.append(element('th', c.name, { scope: 'row' }), element('td', row.values[i] == null ? '–' : typeof row.values[i] === 'number' ? told_of(c)(row.values[i]) : `${row.values[i]}`));
       table.append(line);
     });
     this.card.replaceChildren(element('h2', `Case ${row.case}`), element('div', row.status, { class: `state ${row.status}` }), table, element('p', 'To run it alone:', { class: 'soft' }), element('pre', `${this.data.command} ${row.case}`));
   }
 
   rows({ head, rows }) {
-    const columns = head.map((name, i) => [name, row => { const v = row.cells[i]; return v !== '' && Number.isFinite(+v) ? +v : v; }, row => { const v = row.cells[i]; return v !== '' && Number.isFinite(+v) ? number(+v) : v; }]);
+    // Of a result a row tells where it lies, and how far it scatters.
+    const [first, least, greatest] = ['mean', 'least', 'greatest'].map(name => head.indexOf(name)), numeric = v => v !== '' && Number.isFinite(+v);
+    const told = (row, i) => (i < first ? number_among(rows.map(cells => +cells[i])) : head[i] === 'deviation' ? number : number_within(+row.cells[least], +row.cells[greatest]));
+    const columns = head.map((name, i) => [name, row => (numeric(row.cells[i]) ? +row.cells[i] : row.cells[i]), row => (numeric(row.cells[i]) ? told(row, i)(+row.cells[i]) : row.cells[i])]);
     const frame = element('div', null, { class: 'scroll' });
     frame.append(table_of(columns, rows.map(cells => ({ cells }))));
     return frame;
@@ -317,7 +327,7 @@ const of_all = (shown, all, where) => all > shown ? ` The first ${shown} of ${al
 function told_values(rows, parameter, value) {
   const of = new Map();
   for (const r of rows) if (r[value] !== '' && Number.isFinite(+r[value])) of.set(r[parameter], [...of.get(r[parameter]) ?? [], +r[value]]);
-  const told = new Map([...of].map(([name, values]) => [name, number_within(Math.min(...values), Math.max(...values))]));
+  const told = new Map([...of].map(([name, values]) => [name, number_among(values)]));
   return r => ` = ${r[value] !== '' && Number.isFinite(+r[value]) ? told.get(r[parameter])(+r[value]) : r[value]}`;
 }
 

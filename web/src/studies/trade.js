@@ -25,7 +25,7 @@ export class Trade {
     beside.append(left, this.card);
     holder.append(this.answer, beside, element('h2', 'Every model'), this.table(), this.reasons());
     this.write_answer();
-    this.choose(data.points.filter(p => p.pareto).sort((a, b) => percent(a) - percent(b)).find(p => percent(p) <= 1) ?? data.points.find(p => p.pareto));
+    this.choose(data.points[data.cheapest.findLast(c => c.point != null)?.point] ?? data.points.find(p => p.pareto));
   }
 
   write_answer() {
