@@ -8,6 +8,7 @@ import { drawn, grouped, quantities, unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
 import { greatest_of, longest_in_words } from '../src/arrows.js';
 import { Pace } from '../src/pace.js';
+import { clock_of, speeds_of } from '../src/playback.js';
 import { axis_ticks, ends_of, labels_of } from '../src/ticks.js';
 import { certificate_rows } from '../src/words.js';
 import { in_browser, opened, text } from './browser.mjs';
@@ -66,6 +67,21 @@ function check_axes() {
   assert.ok(axis_ticks(1e-300, 1e300, { ...how, log: true }).length >= 5);
   assert.deepEqual(axis_ticks(2, 2 + 1e-15, how), [], 'what rounding parts has no ticks between');
   assert.deepEqual(ends_of(0, 0, 0.06), [-1, 1]);
+}
+
+// Runs of every length can be watched, and the clock tells a thousandth of each.
+function check_playback() {
+  for (const [run, speed] of [[3.8, 1], [60, 1], [1, 0.2], [80, 2], [100, 5]]) assert.equal(speeds_of(run).chosen, speed, `${run} s`);
+  for (let k = -12; k <= 12; ++k) {
+    for (const m of [1, 1.7, 4, 9.9]) {
+      const length = Number(`${m}e${k}`), { all, chosen } = speeds_of(length), seconds = length / chosen;
+      assert.ok(all.some(s => s.value === chosen) && all.some(s => s.value === 1));
+      if (length < 1 || length > 100) assert.ok(seconds > 9 && seconds < 24, `${length} s in ${seconds} s`);
+      const told = clock_of(0, length);
+      assert.ok(told(0.501 * length) !== told(0.5 * length) && Math.abs(parseFloat(told(length)) - length) < 1e-3 * length, `${told(length)} for ${length}`);
+    }
+  }
+  assert.deepEqual([clock_of(0, 3.8)(1), clock_of(0, 1e-5)(3.7e-6), clock_of(0, 1e7)(2e6), clock_of(1.9999, 2)(1.99995)], ['1.000 s', '3.70e-6 s', '2000000 s', '1.99995000 s']);
 }
 
 // Runs lie over each other in the same unit, also where an angle turns far in one of them alone.
@@ -304,6 +320,11 @@ async function check_small(browser, troubles) {
     assert.deepEqual(times, ['0', '5e-6', '10e-6', '15e-6', '20e-6'], title);
     assert.ok(values.length >= 3 && new Set(values).size === values.length, `${title}: ${values}`);
   }
+  assert.equal(await text(page, '#clock'), '0.00e-6 s');
+  assert.equal(await page.inputValue('#speed'), '0.000001');
+  await page.focus('#view');
+  await page.keyboard.press('End');
+  assert.equal(await text(page, '#clock'), '20.00e-6 s');
   await page.close();
 }
 const mirror = `format: withy/1
@@ -379,6 +400,7 @@ function check_looks(file) {
 
 check_ticks();
 check_axes();
+check_playback();
 check_groups();
 check_outputs();
 check_gaps();
