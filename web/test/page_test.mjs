@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Vector3 } from 'three';
+import { thickness_of } from '../src/shapes.js';
 import { drawn, grouped, quantities, unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
 import { greatest_of, longest_in_words } from '../src/arrows.js';
@@ -82,6 +83,14 @@ function check_playback() {
     }
   }
   assert.deepEqual([clock_of(0, 3.8)(1), clock_of(0, 1e-5)(3.7e-6), clock_of(0, 1e7)(2e6), clock_of(1.9999, 2)(1.99995)], ['1.000 s', '3.70e-6 s', '2000000 s', '1.99995000 s']);
+}
+
+// A hinge is no larger than a part of the way to the next one, however long the whole is, and can be seen.
+function check_thickness() {
+  const link = (...ways) => ({ end: -1, hung: ways.map(way => ({ rest: { p: new Vector3(way, 0, 0) } })), box: { pose: [0.05, 0, 0, 1, 0, 0, 0], edges: [0.1, 0.1, 0.1] } });
+  const of = (body, size) => +thickness_of(body, size).toPrecision(3);
+  assert.deepEqual([of(link(1), 2), of(link(0.1), 20), of(link(1, 1.1), 20), of(link(), 20), of(link(1e-6), 1)], [0.022, 0.018, 0.018, 0.018, 0.0008]);
+  assert.ok(thickness_of({ end: -1, hung: [] }, 1) > 0);
 }
 
 // Runs lie over each other in the same unit, also where an angle turns far in one of them alone.
@@ -401,6 +410,7 @@ function check_looks(file) {
 check_ticks();
 check_axes();
 check_playback();
+check_thickness();
 check_groups();
 check_outputs();
 check_gaps();
