@@ -7,7 +7,7 @@ import { Vector3 } from 'three';
 import { thickness_of } from '../src/shapes.js';
 import { drawn, grouped, quantities, unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
-import { greatest_of, longest_in_words } from '../src/arrows.js';
+import { greatest_of, longest_in_words, measured } from '../src/arrows.js';
 import { Pace } from '../src/pace.js';
 import { clock_of, speeds_of } from '../src/playback.js';
 import { axis_ticks, ends_of, labels_of } from '../src/ticks.js';
@@ -146,6 +146,8 @@ function check_common_scale() {
   const greatest = greatest_of([arrow('N', 0.05), arrow('N m', 0.3), arrow('N', 2860), arrow('m/s^2', 0)], 10);
   assert.equal(greatest.get('N'), 2860);
   assert.equal(longest_in_words(greatest), '2.86 kN, 300 mN m');
+  assert.deepEqual([5e-6, 2e-4, 1e-3, 0.05, 0.1, 0.5, 200, 1000, 1e8].map(v => measured(v, 'm')), ['5 µm', '0.2 mm', '1 mm', '50 mm', '0.1 m', '0.5 m', '200 m', '1 km', '100000 km']);
+  assert.deepEqual([measured(3.2e-7, 'N'), measured(9.81, 'm/s^2')], ['320 nN', '9.81 m/s²']);
 }
 
 const picture = page => page.evaluate(() => document.querySelector('#view canvas').toDataURL());
@@ -329,6 +331,13 @@ async function check_small(browser, troubles) {
     assert.deepEqual(times, ['0', '5e-6', '10e-6', '15e-6', '20e-6'], title);
     assert.ok(values.length >= 3 && new Set(values).size === values.length, `${title}: ${values}`);
   }
+  assert.match(await text(page, '#cell'), /^squares of \d+ µm/);
+  const [size, nearest] = await page.evaluate(() => { const { view } = document.getElementById('view'); return [view.size, Math.min(...view.shapes[0].items.map(i => i.radius))]; });
+  assert.ok(size > 5e-5 && size < 2e-4 && nearest < 0.012 * size, `${nearest} of ${size}`);
+  const far = await picture(page);
+  await page.hover('#view canvas');
+  await page.mouse.wheel(0, -400);
+  await page.waitForFunction(before => document.querySelector('#view canvas').toDataURL() !== before, far); // it is drawn nearer
   assert.equal(await text(page, '#clock'), '0.00e-6 s');
   assert.equal(await page.inputValue('#speed'), '0.000001');
   await page.focus('#view');
