@@ -322,9 +322,10 @@ async function check_small(browser, troubles) {
   writeFileSync(join(folder, 'mirror.yaml'), mirror);
   run('run', join(folder, 'mirror.yaml'), '--out', join(folder, 'mirror'));
   const page = await opened(browser, join(folder, 'mirror/report.html'), 't=0&theme=light', troubles);
-  const axes = await page.evaluate(() => {
+  const axes = await page.evaluate(async () => {
     const { charts } = document.getElementById('charts');
     charts.all();
+    await new Promise(done => setTimeout(done)); // they are drawn behind this
     return charts.panels.map(({ group, chart }) => ({ title: group.title, labels: chart.axes.map(a => a._values) }));
   });
   for (const { title, labels: [times, values] } of axes) {

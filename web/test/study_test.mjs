@@ -372,6 +372,20 @@ async function check_printed_whole(page) {
   assert.equal(printed, seen, 'all lines are printed');
 }
 
+// On the page of a phone figures have letters that can be read, tables keep their lines, and nothing is wider than it.
+async function check_narrow_page(page, name) {
+  const before = page.viewportSize();
+  await page.setViewportSize({ width: 420, height: 900 });
+  await page.waitForFunction(() => [...document.querySelectorAll('.study-figure svg')].every(svg => svg.getScreenCTM().a > 0.99));
+  const sizes = await page.$$eval('.study-figure text', all => all.map(e => parseFloat(getComputedStyle(e).fontSize) * e.ownerSVGElement.getScreenCTM().a));
+  assert.ok(Math.min(...sizes) > 10.5, `letters of ${Math.min(...sizes)} px on the page of ${name}`);
+  const lines = await page.$$eval('.said .columns', all => all.map(e => [e.textContent.replace(/\n$/, '').split('\n').length, Math.round(e.getBoundingClientRect().height / parseFloat(getComputedStyle(e).lineHeight))]));
+  if (name === 'response') assert.ok(lines.length > 0);
+  for (const [written, seen] of lines) assert.ok(seen <= written + 1, `${written} lines of a table take ${seen}`); // and a bar to scroll with
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `the page of ${name} is too wide`);
+  await page.setViewportSize(before);
+}
+
 // Words and curves of the files: each point told by the pointer, curves taken away by their names.
 async function check_figures(browser, folder, run, troubles) {
   const measured = join(scenes, 'measured/pendulum.csv');
@@ -395,6 +409,7 @@ async function check_figures(browser, folder, run, troubles) {
     if (name === 'terms') assert.ok(samples.length > 2, 'a line for each term');
     for (const [length, dashes] of samples) assert.ok(length >= dashes.split(' ').reduce((sum, d) => sum + +d, 0), `${length} px of ${dashes} on the page of ${name}`);
     await shot(page, `${name}-light`);
+    await check_narrow_page(page, name);
     await check_printed_whole(page);
     await page.close();
   }

@@ -35,10 +35,16 @@ export function scale_of(values, { log = false, from, to, include = [], room = 0
   return at;
 }
 
-// Axes with their labels; what is drawn goes to `marks`, cut off at the frame.
+// How wide a figure can be drawn in an element without becoming smaller, which its letters would too.
+const beside_figure = 28, least_width = 260;
+export const room_in = holder => Math.max(least_width, (holder.clientWidth || Infinity) - beside_figure);
+
+// Axes with their labels; what is drawn goes to `marks`, cut off at the frame. room: see room_in
 export class Figure {
-  constructor({ title, width = 760, height = 440, right = 16, x, y }) {
+  constructor({ title, width = 760, height = 440, right = 16, room = Infinity, x, y }) {
     const top = 14, bottom = 50;
+    width = Math.min(width, room);
+    height = Math.min(height, Math.max(240, width));
     this.y = scale_of(y.values, { ...y, from: height - bottom, to: top });
     const left = Math.max(74, 30 + 7.7 * Math.max(0, ...this.y.ticks.map(([, name]) => name.length)));
     Object.assign(this, { width, height, left, top, bottom, right });

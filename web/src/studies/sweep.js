@@ -1,7 +1,7 @@
 // Many cases: how results are distributed, what they depend on, and which cases failed.
 import { number, number_among, number_within } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, answers, draw, scale_of, table_of, tell } from './figure.js';
+import { Figure, answers, draw, room_in, scale_of, table_of, tell } from './figure.js';
 
 const most_told = 6;  // results, in words
 const short = name => name.replace(/^peak\.|^final\./, '');
@@ -15,11 +15,11 @@ export class Sweep {
     this.results = data.columns.filter(c => c.role === 'result' && c.numeric);
     this.write_answer();
     this.card = element('aside', null, { class: 'card', id: 'case', 'aria-live': 'polite' });
-    if (data.indices) this.section('What it depends on', (colours, result) => this.indices(colours, result), true);
+    if (data.indices) this.section('What it depends on', (colours, result, room) => this.indices(colours, result, room), true);
     if (data.histories?.length) this.over_time();
-    this.section('Envelopes over what varies', (colours, result) => this.envelopes(colours, result), true);
-    this.section('Distributions', colours => this.histograms(colours));
-    this.section('Scatter', colours => [this.scatter(colours)]);
+    this.section('Envelopes over what varies', (colours, result, room) => this.envelopes(colours, result, room), true);
+    this.section('Distributions', (colours, _, room) => this.histograms(colours, room));
+    this.section('Scatter', (colours, _, room) => [this.scatter(colours, room)]);
     if (data.statistics) this.section('Statistics', () => [this.rows(data.statistics)]);
     if (data.failures.length) this.section(`Cases that failed (${data.failed})`, () => [this.failures()]);
   }
@@ -57,7 +57,8 @@ export class Sweep {
     this.parts.push(entry);
   }
   fill(entry) {
-    const made = entry.result || !entry.make.length ? entry.make(this.colours, entry.result) : entry.make(this.colours, null);
+    entry.part.hidden = false;
+    const made = entry.make(this.colours, entry.result ?? null, room_in(entry.figures));
     entry.figures.replaceChildren(...made);
     entry.part.hidden = made.length === 0;
   }
@@ -66,10 +67,10 @@ export class Sweep {
     this.parts.forEach(entry => this.fill(entry));
   }
 
-  histograms(colours) {
+  histograms(colours, room) {
     return [...this.results, ...this.varied].map(c => {
       const { bins, least, greatest } = c, told = told_of(c), width = (greatest - least) / bins.length || 1;
-      const figure = new Figure({ title: c.name, width: 420, height: 250, x: { label: c.name, values: [least, greatest], room: 0.02 }, y: { label: 'cases', values: bins, include: [0], room: c.role === 'result' ? room_of_names : 0.05 } });
+      const figure = new Figure({ title: c.name, room, width: 420, height: 250, x: { label: c.name, values: [least, greatest], room: 0.02 }, y: { label: 'cases', values: bins, include: [0], room: c.role === 'result' ? room_of_names : 0.05 } });
       bins.forEach((count, i) => {
         if (!(count > 0)) return;
         // All cases may have one value: a bar about it.
@@ -91,24 +92,24 @@ export class Sweep {
   // Bands over time that shares of the cases lie in, a figure a point of the grids; one result at a time.
   over_time() {
     const names = [...new Set(this.data.histories.map(h => h.name))];
-    this.section('Over time', (colours, chosen) => [
+    this.section('Over time', (colours, chosen, room) => [
       element('p', `Line: median; bands: from 25 to 75, from 5 to 95 % of the cases, and from the least to the greatest.${of_all(this.data.histories.length, this.data.histories_in_all, 'histories.csv has all')}`, { class: 'soft wide' }),
-      ...this.data.histories.filter(h => h.name === chosen.name).flatMap(h => this.of_history(h, colours)),
+      ...this.data.histories.filter(h => h.name === chosen.name).flatMap(h => this.of_history(h, colours, room)),
     ], names.length > 1, names.map(name => ({ name })));
   }
   // Bands that are narrow beside the way of the median are shown about it too.
-  of_history(h, colours) {
+  of_history(h, colours, room) {
     const known = h.rows.filter(r => r[2] != null), medians = known.map(r => r[5]);
     const widest = Math.max(...known.map(r => r[8] - r[2])), way = Math.max(...medians) - Math.min(...medians);
-    if (!(widest > 0 && widest < 0.1 * way)) return [this.history(h, colours)];
+    if (!(widest > 0 && widest < 0.1 * way)) return [this.history(h, colours, room)];
     const less = { ...h, name: `${h.name} − median`, rows: known.map(r => [r[0], r[1], ...r.slice(2).map(v => v - r[5])]) };
-    return [this.history(h, colours), this.history(less, colours)];
+    return [this.history(h, colours, room), this.history(less, colours, room)];
   }
-  history({ name, of, rows }, colours) {
+  history({ name, of, rows }, colours, room) {
     const shown = rows.filter(r => r[2] != null);
     const at = Object.entries(of).map(([path, value]) => `${path} = ${Number.isFinite(+value) ? number_among(this.data.histories.map(h => +h.of[path]))(+value) : value}`).join(', ');
     const told = number_among(shown.flatMap(r => [r[2], r[8]])), told_time = number_among(rows.map(r => r[0]));
-    const figure = new Figure({ title: at || null, width: 420, height: 300, x: { label: 't [s]', values: rows.map(r => r[0]), room: 0.01 }, y: { label: name, values: shown.flatMap(r => [r[2], r[8]]) } });
+    const figure = new Figure({ title: at || null, room, width: 420, height: 300, x: { label: 't [s]', values: rows.map(r => r[0]), room: 0.01 }, y: { label: name, values: shown.flatMap(r => [r[2], r[8]]) } });
     [[2, 8, 0.14], [3, 7, 0.2], [4, 6, 0.3]].forEach(([low, high, opacity]) => {
       const there = shown.map(r => `${figure.x(r[0])} ${figure.y(r[high])}`), back = [...shown].reverse().map(r => `${figure.x(r[0])} ${figure.y(r[low])}`);
       if (shown.length) figure.marks.append(draw('path', { d: `M${[...there, ...back].join('L')}Z`, fill: colours[0], opacity }));
@@ -128,13 +129,13 @@ export class Sweep {
   }
 
   // Over each number that varies: least, 5 %, median, 95 % and greatest of the cases near each of its values.
-  envelopes(colours, result) {
+  envelopes(colours, result, room) {
     if (!result) return [];
     const told = told_of(result);
     const made = this.varied.map(axis => {
       const levels = this.data.envelopes[axis.name]?.[result.name];
       if (!levels || levels.length < 2) return null;
-      const figure = new Figure({ width: 420, height: 300, x: { label: axis.name, values: levels.map(l => l.at), room: 0.02 }, y: { label: result.name, values: levels.flatMap(l => [l.least, l.greatest]) } });
+      const figure = new Figure({ room, width: 420, height: 300, x: { label: axis.name, values: levels.map(l => l.at), room: 0.02 }, y: { label: result.name, values: levels.flatMap(l => [l.least, l.greatest]) } });
       const band = (low, high, opacity) => {
         const there = levels.map(l => `${figure.x(l.at)} ${figure.y(l[high])}`), back = [...levels].reverse().map(l => `${figure.x(l.at)} ${figure.y(l[low])}`);
         figure.marks.append(draw('path', { d: `M${[...there, ...back].join('L')}Z`, fill: colours[0], opacity }));
@@ -150,12 +151,12 @@ export class Sweep {
     return made.length || which ? [element('p', `Line: median; dark: from 5 to 95 % of the cases; light: from the least to the greatest.${which}`, { class: 'soft wide' }), ...made] : [];
   }
 
-  indices(colours, result) {
+  indices(colours, result, room) {
     const { head, rows } = this.data.indices, at = name => head.indexOf(name);
     const own = rows.filter(r => r[at('result')] === result?.name);
     if (!own.length) return [];
     const value = at('value') >= 0 ? told_values(own, at('parameter'), at('value')) : () => '';
-    const bars = (title, of, color) => this.bars(title, own.map(r => ({ name: r[at('parameter')], value_told: value(r), ...of(r) })), color);
+    const bars = (title, of, color) => this.bars(title, own.map(r => ({ name: r[at('parameter')], value_told: value(r), ...of(r) })), color, room);
     const end = cell => cell === '' || cell == null ? undefined : +cell; // of one number there is no interval
     const estimate = name => r => ({ value: +r[at(name)], low: end(r[at(`${name}.low`)]), high: end(r[at(`${name}.high`)]) });
     if (at('total') >= 0) return [bars('Sobol index, alone: share of the variance', estimate('first'), colours[0]), bars('Sobol index, total: with all others', estimate('total'), colours[1])];
@@ -164,12 +165,12 @@ export class Sweep {
   }
 
   // Horizontal bars with intervals, the greatest first.
-  bars(title, entries, color) {
+  bars(title, entries, color, room) {
     const all = entries.filter(e => Number.isFinite(e.value)).sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
     entries = all.slice(0, 30);
     if (all.length > entries.length) title += `: the first ${entries.length} of ${all.length}, indices.csv has all`;
-    const figure = element('figure', null, { class: 'study-figure' }), width = 560, line = 26, height = entries.length * line + 30;
-    const names = entries.map(e => name_within(e.name, e.value_told ?? '', 42)), left = Math.min(310, Math.max(120, 20 + 7 * Math.max(0, ...names.map(n => n.length))));
+    const figure = element('figure', null, { class: 'study-figure' }), width = Math.min(560, room), line = 26, height = entries.length * line + 30;
+    const most = Math.min(310, 0.55 * width), names = entries.map(e => name_within(e.name, e.value_told ?? '', Math.floor((most - 16) / 7))), left = Math.min(most, Math.max(120, 20 + 7 * Math.max(0, ...names.map(n => n.length))));
     const beside = 60; // room of a number at the end of its bar
     const svg = draw('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': title });
     const x = scale_of(entries.flatMap(e => [e.value, e.low ?? e.value, e.high ?? e.value]), { from: left + (entries.some(e => e.value < 0) ? beside : 0), to: width - beside, include: [0] });
@@ -191,7 +192,7 @@ export class Sweep {
   }
 
   // Every pair of some columns; a case is found by the pointer and shown whole by a click.
-  scatter(colours) {
+  scatter(colours, room) {
     const all = [...this.varied, ...this.results];
     this.pairs ??= new Set([...this.varied.slice(0, 3), ...this.results.slice(0, 3)]);
     const holder = element('div', null, { class: 'pairs' }), bar = element('div', null, { class: 'legend' });
@@ -204,19 +205,21 @@ export class Sweep {
       bar.append(chip);
     }
     const beside = element('div', null, { class: 'beside' });
-    beside.append(this.matrix(all.filter(c => this.pairs.has(c)), colours), this.card);
+    const frame = element('div', null, { class: 'sideways' });
+    frame.append(this.matrix(all.filter(c => this.pairs.has(c)), colours, room));
+    beside.append(frame, this.card);
     if (!this.card.childElementCount) this.card.append(element('h2', 'Case'), element('p', 'Click a point.', { class: 'soft' }));
     const { most, of } = this.data.sample;
     holder.append(bar, element('p', `Completed cases as points, failed ones as crosses where both values are known${most < of ? `; ${most} of the ${of} cases, taken at random` : ''}.`, { class: 'soft' }), beside);
     return holder;
   }
 
-  matrix(columns, colours) {
-    const n = columns.length, cell = Math.max(110, Math.min(250, 840 / Math.max(1, n))), size = n * cell;
+  matrix(columns, colours, room) {
+    const n = columns.length;
     // Ends of axes stand beside each other below a cell where there is room, else below each other.
     const ends = new Map(columns.map(c => [c, [c.least, c.greatest].map(told_of(c))])), longest = Math.max(1, ...[...ends.values()].flat().map(e => e.length));
-    const left = 22 + Math.max(42, 7 * longest), lines = 14 * longest > cell - 16 ? 2 : 1, bottom = 34 + 12 * lines;
-    const svg = draw('svg', { viewBox: `0 0 ${left + size + 6} ${size + bottom + 6}`, role: 'img', 'aria-label': 'Scatter of every pair', style: `max-width: ${left + size + 6}px` });
+    const left = 22 + Math.max(42, 7 * longest), least = 110, cell = Math.max(least, Math.min(250, 840 / Math.max(1, n), (room - left) / Math.max(1, n))), size = n * cell, lines = 14 * longest > cell - 16 ? 2 : 1, bottom = 34 + 12 * lines;
+    const svg = draw('svg', { viewBox: `0 0 ${left + size + 6} ${size + bottom + 6}`, role: 'img', 'aria-label': 'Scatter of every pair', style: `max-width: ${left + size + 6}px; min-width: ${left + n * least + 6}px` });
     const place = name => this.data.columns.findIndex(c => c.name === name);
     const scales = columns.map(c => scale_of([c.least, c.greatest], { from: 6, to: cell - 6, room: 0 }));
     columns.forEach((y, i) => columns.forEach((x, j) => {

@@ -1,7 +1,7 @@
 // Error against cost: each model a mark, the Pareto front a line; the model that is clicked in full.
 import { number } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, legend, table_of } from './figure.js';
+import { Figure, legend, room_in, table_of } from './figure.js';
 
 const modes_of = p => p.modes === 0 ? "the scene's modes" : `${p.modes} ${p.modes === 1 ? 'mode' : 'modes'}${p.family ? ` (${p.family})` : ''}`;
 const name_of = p => `${p.formulation}, ${modes_of(p)}, ${p.integrator} at ${power(p.tolerance)}`;
@@ -82,7 +82,7 @@ export class Trade {
     const hidden = p => this.formulations.find(f => f.name === p.formulation).hidden || this.integrators.find(i => i.name === p.integrator).hidden;
     const all = this.data.points.filter(p => p.over.join(' ') === over && done(p)), shown = all.filter(p => !hidden(p));
     const reference = this.data.references[over], least = reference?.relative_error > 0 ? 100 * reference.relative_error : null;
-    const figure = new Figure({ title: over || null, height: this.overs.length > 1 ? 360 : 460, x: { label: 'CPU time [ms]', log: true, values: all.map(milliseconds) }, y: { label: 'error [% of range]', log: true, zeros: true, values: [...all.map(percent), ...(least ? [least] : [])] } });
+    const figure = new Figure({ title: over || null, room: room_in(this.figures), height: this.overs.length > 1 ? 360 : 460, x: { label: 'CPU time [ms]', log: true, values: all.map(milliseconds) }, y: { label: 'error [% of range]', log: true, zeros: true, values: [...all.map(percent), ...(least ? [least] : [])] } });
     if (least) {
       const y = figure.y(least);
       figure.marks.append(Object.assign(figure.line([[10 ** figure.x.low, least], [10 ** figure.x.high, least]], { class: 'limit' })));
