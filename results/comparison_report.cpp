@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "withy/core/model/columns.hpp"
 #include "withy/results/certificate_json.hpp"
+#include "withy/results/run_text.hpp"
 #include "withy/results/text_table.hpp"
 
 namespace withy {
@@ -53,8 +53,7 @@ void add_row(TextTable& table, const ComparisonAt& group, const study::ComparedR
     const auto columns = coordinate_columns(model.hinges()[h]);
     if (columns.size() != 1) continue;
     const double x = s.final.y[model.layout().hinges[h].position];
-    const double shown = columns[0].unit == "rad" ? x * 180 / std::numbers::pi : x;
-    row.push_back(completed ? fmt::format("{:.4f}", shown) : "-");
+    row.push_back(!completed ? "-" : columns[0].unit == "rad" ? degrees_text(x) : to_four_places(x));
   }
   for (const auto& [body, d] : s.peak_deflection)
     row.push_back(completed ? fmt::format("{:.3f}", 1e3 * std::hypot(d[1], d[2])) : "-");

@@ -23,29 +23,33 @@ namespace {
 
 std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"); }
 
-/// In degrees to four places; what rounds to zero has no sign, and what has more digits than are known an exponent.
-std::string in_degrees(double angle) {
-  constexpr double long_number = 1e12;
-  if (!(std::abs(angle) < long_number)) return fmt::format("{:.6g}", angle * 180 / std::numbers::pi);
-  const std::string text = fmt::format("{:.4f}", angle * 180 / std::numbers::pi);
-  return text == "-0.0000" ? text.substr(1) : text;
-}
-
 /// Of a quaternion w x y z: intrinsic turns about x, y, z, R = Rx(a) Ry(b) Rz(c).
 std::string attitude(std::span<const double> q) {
   const double w = q[0], x = q[1], y = q[2], z = q[3], size = w * w + x * x + y * y + z * z;
   return fmt::format("{}, {}, {} deg, turned about x, y, z in this order",
-                     in_degrees(std::atan2(2 * (w * x - y * z), w * w - x * x - y * y + z * z)),
-                     in_degrees(std::asin(std::clamp(2 * (x * z + w * y) / size, -1.0, 1.0))),
-                     in_degrees(std::atan2(2 * (w * z - x * y), w * w + x * x - y * y - z * z)));
+                     degrees_text(std::atan2(2 * (w * x - y * z), w * w - x * x - y * y + z * z)),
+                     degrees_text(std::asin(std::clamp(2 * (x * z + w * y) / size, -1.0, 1.0))),
+                     degrees_text(std::atan2(2 * (w * z - x * y), w * w + x * x - y * y - z * z)));
 }
 
 }  // namespace
 
+std::string to_four_places(double value) {
+  constexpr double long_number = 1e12, short_number = 0.1;
+  if (!(std::abs(value) < long_number)) return fmt::format("{:.6g}", value);
+  if (value != 0 && std::abs(value) < short_number) return fmt::format("{:.4g}", value);
+  return fmt::format("{:.4f}", value == 0 ? 0.0 : value);  // zero has no sign
+}
+
+std::string degrees_text(double angle) {
+  constexpr double rounding = 1e-14;  // of a turn
+  return to_four_places(std::abs(angle) < rounding ? 0.0 : angle * 180 / std::numbers::pi);
+}
+
 std::string readable(double value, const std::string& unit) {
   constexpr double many = 20 * std::numbers::pi;  // a wheel: its turns tell more than its degrees
   const std::string turns = std::abs(value) > many ? fmt::format(", {:.5g} turns", value / (2 * std::numbers::pi)) : "";
-  if (unit == "rad") return fmt::format("{} deg{}", in_degrees(value), turns);
+  if (unit == "rad") return fmt::format("{} deg{}", degrees_text(value), turns);
   if (unit == "rad/s" && std::abs(value) > many)
     return fmt::format("{:.6g} rad/s, {:.5g} rpm", value, value * 30 / std::numbers::pi);
   return fmt::format("{:.6g}{}{}", value, unit.empty() || unit == "1" ? "" : " ", unit == "1" ? "" : unit);

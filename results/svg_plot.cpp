@@ -119,9 +119,14 @@ void draw_y_label(std::string& out, const Panel& panel, const Scale& s) {
                  size, escaped(panel.y_label));
 }
 
+/// Nothing is drawn in it: marks of y would tell of an axis that nobody has asked for.
+bool is_empty(const Panel& panel) {
+  return std::all_of(panel.curves.begin(), panel.curves.end(), [](const Curve& c) { return c.x.empty(); });
+}
+
 void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
   const double left = s.left, bottom = s.top + s.height;
-  const std::vector<double> x_marks = s.x_marks(), y_marks = s.y_marks();
+  const std::vector<double> x_marks = s.x_marks(), y_marks = is_empty(panel) ? std::vector<double>() : s.y_marks();
   const std::vector<std::string> x_texts = mark_texts(x_marks), y_texts = mark_texts(y_marks);
   for (std::size_t i = 0; i < y_marks.size(); ++i) {
     const double y = s.y(y_marks[i]);
@@ -142,6 +147,10 @@ void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
                  "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
                  left, s.top, plot_width - left - right, s.height, (left + plot_width - right) / 2, bottom + 38,
                  escaped(panel.x_label));
+  if (is_empty(panel))
+    fmt::format_to(std::back_inserter(out), "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                   (left + plot_width - right) / 2, s.top + s.height / 2,
+                   panel.log_y ? "zero throughout, but for rounding" : "no values");
   draw_y_label(out, panel, s);
 }
 

@@ -280,9 +280,12 @@ std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Chec
       loads.erase(hopeless);
       continue;
     }
+    const std::string first = loads.front().name, way = circle(loads);
     checker.key_error(
-        "/loads/" + loads.front().name,
-        fmt::format("the loop {} is algebraic: each of these loads needs what another one gives", circle(loads)));
+        "/loads/" + first,
+        fmt::format("the loop {} is algebraic{}", way,
+                    way == first + " -> " + first ? "; if an output of that name is meant, give the load another name"
+                                                  : ": each of these loads needs what another one gives"));
     break;
   }
   return ordered;

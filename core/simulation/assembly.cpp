@@ -2,8 +2,11 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "withy/core/model/closing.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
@@ -147,21 +150,26 @@ bool closes(const Model& model, const GivenState& given, const GivenState* kept,
          (gap <= near_enough && close(free_speeds(model, std::vector<bool>(model.layout().speeds, false), true)));
 }
 
-/// The coordinate or speed that has changed most, in words.
-std::string greatest_change(const Layout& layout, const State& before, const State& after, bool rates) {
-  const Slot* most = nullptr;
+/// The coordinate or speed that has changed most, in words, with its unit.
+std::string greatest_change(const Model& model, const State& before, const State& after, bool rates) {
+  const Layout& layout = model.layout();
+  std::string most;
   double change = 1e-12;
-  const auto look = [&](const Slot& slot) {
+  const auto look = [&](const Slot& slot, const std::vector<Column>& columns) {
     const std::size_t first = rates ? layout.positions + slot.speed : slot.position;
-    for (std::size_t i = first; i < first + (rates ? slot.speeds : slot.positions); ++i) {
-      if (std::abs(after.y[i] - before.y[i]) <= change) continue;
-      change = std::abs(after.y[i] - before.y[i]);
-      most = &slot;
+    for (std::size_t i = 0; i < (rates ? slot.speeds : slot.positions); ++i) {
+      const double own = std::abs(after.y[first + i] - before.y[first + i]);
+      if (own <= change) continue;
+      change = own;
+      most = "'" + slot.name + "' by " + brief(change);
+      if (i >= columns.size() || columns[i].unit.empty()) continue;  // as of modes
+      most += columns[i].unit == "1" ? " in its quaternion" : ' ' + columns[i].unit;
     }
   };
-  for (const Slot& slot : layout.hinges) look(slot);
-  for (const Slot& slot : layout.bodies) look(slot);
-  return most == nullptr ? std::string() : "'" + most->name + "' by " + brief(change);
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h)
+    look(layout.hinges[h], rates ? rate_columns(model.hinges()[h]) : coordinate_columns(model.hinges()[h]));
+  for (const Slot& slot : layout.bodies) look(slot, {});
+  return most;
 }
 
 std::size_t farthest(const Model& model, const Eigen::VectorXd& gaps) {
@@ -181,7 +189,6 @@ std::size_t farthest(const Model& model, const Eigen::VectorXd& gaps) {
 
 Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state,
                   const GivenState* kept) {
-  const Layout& layout = model.layout();
   const State before = state;
   Assembler assembler(model, equations, state);
   Assembly result;
@@ -213,8 +220,8 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
                    " m/s, and what `initial` gives and motions prescribe leaves no way; give fewer rates";
     return result;
   }
-  const std::string moved = greatest_change(layout, before, state, false);
-  const std::string sped = greatest_change(layout, before, state, true);
+  const std::string moved = greatest_change(model, before, state, false);
+  const std::string sped = greatest_change(model, before, state, true);
   if (!moved.empty()) result.remark = "positions changed, most " + moved;
   if (!sped.empty()) result.remark += (moved.empty() ? "speeds changed, most " : "; speeds too, most ") + sped;
   if (!result.remark.empty()) result.remark = "Loops were closed at the start: " + result.remark + ".";

@@ -136,6 +136,14 @@ TEST(SvgPlot, AnAxisOfXBeginsWhereItsRangeDoes) {
   EXPECT_THAT(svg, testing::Not(testing::HasSubstr(">500<")));
 }
 
+TEST(SvgPlot, APanelWithoutCurvesSaysSo) {
+  Panel panel{"x", "y", {1e-306, 1e-300}, {}};
+  panel.log_y = true;
+  const std::string svg = svg_plot("t", {}, {panel});
+  EXPECT_THAT(svg, testing::HasSubstr(">zero throughout, but for rounding<"));
+  EXPECT_THAT(svg, testing::Not(testing::HasSubstr("e-30")));
+}
+
 TEST(SvgPlot, TextIsEscaped) {
   const std::string svg = svg_plot("a < b & c", {"x>y"}, {});
   EXPECT_THAT(svg, testing::HasSubstr("a &lt; b &amp; c"));

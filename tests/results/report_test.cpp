@@ -30,10 +30,20 @@ namespace {
 using test::Scratch;
 using testing::HasSubstr;
 
-TEST(RunText, AnAngleThatRoundsToZeroHasNoSign) {
-  EXPECT_EQ(readable(-1e-9, "rad"), "0.0000 deg");
+TEST(RunText, AnAngleThatIsZeroHasNoSign) {
+  EXPECT_EQ(readable(-1e-16, "rad"), "0.0000 deg");
   EXPECT_EQ(readable(-0.0, "rad"), "0.0000 deg");
+}
+
+TEST(RunText, SmallAnglesHaveFourDigits) {
   EXPECT_EQ(readable(-0.001, "rad"), "-0.0573 deg");
+  EXPECT_EQ(readable(9.8676e-7, "rad"), "5.654e-05 deg");
+  EXPECT_EQ(readable(-1e-9, "rad"), "-5.73e-08 deg");
+  EXPECT_EQ(readable(1, "rad"), "57.2958 deg");
+  EXPECT_EQ(degrees_text(0.1 * std::numbers::pi / 180), "0.1000");
+  EXPECT_EQ(to_four_places(-0.25), "-0.2500");
+  EXPECT_EQ(to_four_places(0), "0.0000");
+  EXPECT_EQ(to_four_places(2e-6), "2e-06");
 }
 
 /// Two digits of 0.1254 are beyond three of a limit of 0.129.

@@ -216,8 +216,8 @@ std::string on_hub(std::string text, const std::string& hinge) {
 
 /// What carries a loop moves it as a whole and opens no way: its column of J is the gap that is left, or rounding.
 TEST(SingularLoops, OfWhatIsCarriedAreThoseOfWhatHangsOnTheWorld) {
-  for (const char* hub :
-       {"type: revolute, axis: [0, 0, 1]", "type: free", "type: spherical", "type: planar, axis: [0, 0, 1]"})
+  for (const char* hub : {"type: revolute, axis: [0, 0, 1]", "type: free", "type: spherical",
+                          "type: planar, normal: [0, 0, 1], along: [1, 0, 0]"})
     for (const char* name : {"dopri5", "dop853", "radau"})
       for (const double rtol : {1e-4, 1e-6, 1e-9})
         for (const double more : {0.0, 1e-4}) {

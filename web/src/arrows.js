@@ -4,11 +4,12 @@ import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Vector3
 const up = new Vector3(0, 1, 0), from = new Vector3(), along = new Vector3(), one = new Vector3(), other = new Vector3();
 const colours = dark => ({ force: dark ? '#e69f00' : '#b84a00', moment: dark ? '#e58fc0' : '#a5447c', acceleration: dark ? '#2fc79a' : '#00704f' });
 
-// With the prefix of its unit, as 60.5 MN m.
-function measured(value, unit) {
-  const prefixes = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm']];
-  const [scale, prefix] = /^N\b/.test(unit) ? prefixes.find(([s]) => value >= s) ?? prefixes.at(-1) : [1, ''];
-  return `${+(value / scale).toPrecision(3)} ${prefix}${unit.replace('^2', '²')}`;
+// With the prefix of its unit, as 60.5 MN m, 0.5 m and 5 µm: lengths of a tenth are told without the next prefix.
+const small = [[1, ''], [1e-3, 'm'], [1e-6, 'µ'], [1e-9, 'n'], [1e-12, 'p']], large = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k']];
+export function measured(value, unit) {
+  const prefixes = unit === 'm' ? [[1e3, 'k'], ...small] : /^N\b/.test(unit) ? [...large, ...small] : [[1, '']], least = s => (unit === 'm' && s <= 1 ? 0.1 * s : s);
+  const [scale, prefix] = prefixes.find(([s]) => value >= 0.9999 * least(s)) ?? prefixes.at(-1);
+  return `${+(value / scale).toPrecision(3)} ${prefix}${unit.replace('^2', '²')}`.replace('e+', 'e');
 }
 
 // Of the arrows of all runs, by unit: runs that are drawn over each other are compared. size: of the whole system [m]

@@ -1,12 +1,13 @@
 // Plots over time: a panel for each group of columns, made when it comes into sight.
 import uPlot from 'uplot';
 import { dashes, drawn, palette, passed_unseen, pen_sample } from './data.js';
+import { number, number_among } from './numbers.js';
 import { difference, nearest_own, own_before, place_of } from './rows.js';
-import { is_rounding, label_of } from './ticks.js';
+import { axis_ticks, ends_of } from './ticks.js';
 
 const most_shown = 8; // curves of a panel at first
 
-const number = v => v == null || Number.isNaN(v) ? '–' : v === 0 ? '0' : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(3) : v.toPrecision(5);
+const digits = 5; // of numbers beside a plot, and more where these would not tell them apart
 
 class Panel {
   constructor(owner, group) {
@@ -40,7 +41,7 @@ class Panel {
     more.replaceChildren();
     for (const series of this.group.series.filter(s => !s.on)) {
       const chip = document.createElement('button');
-      chip.textContent = series.name + (series.flat ? ` = ${number(series.of[0].y[0])}` : this.group.limit && series.greatest > -Infinity ? ` ≤ ${number(series.greatest)}` : '');
+      chip.textContent = series.name + (series.flat ? ` = ${number(series.of[0].y[0], digits)}` : this.group.limit && series.greatest > -Infinity ? ` ≤ ${number(series.greatest, digits)}` : '');
       chip.className = 'chip';
       chip.setAttribute('aria-pressed', series.on);
       chip.onclick = () => { series.on = !series.on; chip.setAttribute('aria-pressed', series.on); this.draw(); };
@@ -75,6 +76,8 @@ class Panel {
       }
     });
     this.say(said);
+    for (const curve of out) curve.told = number_among(curve.values, digits, true);
+    this.time_told = number_among(out.flatMap(c => [c.t[0], c.t[c.t.length - 1]]), digits, true);
     return out;
   }
 
@@ -101,20 +104,20 @@ class Panel {
   // is not known: it says the least and the greatest; and of rows at another time than the one that it shows, when.
   told_at(u, curve, value, place) {
     if (place == null) return '–';
-    const time = u.data[0][place];
-    if (!curve.spans) return time === u.data[0][u.legend.idxs[0]] ? number(value) : `${number(value)} (at ${number(time)} s)`;
+    const time = u.data[0][place], of_time = this.time_told;
+    if (!curve.spans) return time === u.data[0][u.legend.idxs[0]] ? curve.told(value) : `${curve.told(value)} (at ${of_time(time)} s)`;
     const { t, values } = curve, first = this.stretch_of(curve, place, time), ends = [values[first], values[first + 1]];
-    const told = ends[0] === ends[1] ? number(ends[0]) : `${number(Math.min(...ends))} … ${number(Math.max(...ends))}`;
-    return this.shared ? told : `${told} (${number(t[first])} … ${number(t[first + 1])} s)`;
+    const told = ends[0] === ends[1] ? curve.told(ends[0]) : `${curve.told(Math.min(...ends))} … ${curve.told(Math.max(...ends))}`;
+    return this.shared ? told : `${told} (${of_time(t[first])} … ${of_time(t[first + 1])} s)`;
   }
   stretch_of(curve, place, time) {
     const i = this.shared ? place : place_of(curve.t, time);
     return i - i % 2;
   }
   time_at(curves, value, place) {
-    if (place == null || !this.shared || !curves[0]?.spans) return number(value);
+    if (place == null || !this.shared || !curves[0]?.spans) return this.time_told(value);
     const { t } = curves[0], first = place - place % 2;
-    return t[first] === t[first + 1] ? number(value) : `${number(t[first])} … ${number(t[first + 1])}`;
+    return t[first] === t[first + 1] ? this.time_told(value) : `${this.time_told(t[first])} … ${this.time_told(t[first + 1])}`;
   }
 
   aligned(curves) {
@@ -132,6 +135,7 @@ class Panel {
     this.chart?.destroy();
     this.chart = null;
     const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint }, font: '12px system-ui, sans-serif' };
+    const upright = { apart: 28, log: this.log }, across = { apart: 40, across: true };
     const limit = this.group.limit && !this.log ? this.group.limit : null;
     this.chart = new uPlot({
       width: Math.max(260, holder.clientWidth),
@@ -141,18 +145,14 @@ class Panel {
         drag: { x: true, y: false },
         dataIdx: (u, k, place) => k > 0 && curves[k - 1] ? nearest_own(u.data[k], place, curves[k - 1].parted) : place,
       },
-      scales: { x: { time: false }, y: this.log ? { distr: 3 } : { range: (_, low, high) => range(low, high, limit) } },
+      scales: { x: { time: false }, y: { distr: this.log ? 3 : 1, range: (_, low, high) => (this.log ? range_in_decades(low, high) : range(low, high, limit)) } },
       legend: {
         live: true,
         markers: { width: 0, fill: (_, k) => k > 0 ? pen_sample(colours[curves[k - 1].pen.color % colours.length], dashes[curves[k - 1].pen.dash % dashes.length]) : 'none' },
       },
       axes: [
-        { ...axis, label: 't [s]', labelSize: 18, labelFont: '12px system-ui, sans-serif', size: 32 },
-        {
-          ...axis,
-          size: (_, labels) => Math.max(66, 18 + 7.7 * Math.max(0, ...(labels ?? []).map(l => l.length))),
-          values: (u, ticks) => ticks.map(v => v == null ? '' : label_of(v, ticks, this.log)),
-        },
+        { ...axis, ...own_ticks(across), label: 't [s]', labelSize: 18, labelFont: '12px system-ui, sans-serif', size: 32 },
+        { ...axis, ...own_ticks(upright), size: (_, labels) => Math.max(66, 18 + 7.7 * Math.max(0, ...(labels ?? []).map(l => l.length))) },
       ],
       series: [
         { label: 't [s]', value: (_, v, __, place) => this.time_at(curves, v, place) },
@@ -233,14 +233,26 @@ function lone(values) {
   return at.length ? at : null;
 }
 
-// Ends of an axis: a limit is in sight where values come near it; what changes by rounding alone stands in the middle.
+// Ticks for an axis of uPlot, whose own end at 1e-16 and at 1e33: those that it looks for are not asked for.
+function own_ticks(how) {
+  // What it calls space are the pixels of an increment, which is 1 here.
+  const of = (low, high, space) => axis_ticks(low, high, { ...how, length: space * (high - low) });
+  return {
+    space: 0, incrs: [1], filter: (_, splits) => splits,
+    splits: (u, axis, low, high, _, space) => of(low, high, space).map(([v]) => v),
+    values: (u, splits, axis, space) => { const { min, max } = u.scales[u.axes[axis].scale]; return of(min, max, space).map(([, name]) => name); },
+  };
+}
+
+// Ends of an axis: a limit is in sight where values come near it.
+const room = 0.06;
 function range(low, high, limit) {
   if (low == null) return [0, 1];
   if (limit && high > 0.05 * limit) high = Math.max(high, limit);
-  if (limit) low = Math.min(low, 0);
-  const room = !is_rounding(low, high) ? 0.06 * (high - low) : Math.max(1e-12, 0.1 * Math.abs(low));
-  return [low - room, high + room];
+  return ends_of(limit ? Math.min(low, 0) : low, high, room);
 }
+// Of numbers above zero.
+const range_in_decades = (low, high) => (low == null ? [null, null] : ends_of(Math.log10(low), Math.log10(high), room, 1).map(v => 10 ** v));
 
 export class Charts {
   constructor(element, runs, groups, seek) {

@@ -1,6 +1,7 @@
 // The page: time, view, plots and words of the runs that it holds.
 import { Charts } from './charts.js';
 import { dashes, grouped, palette, pen_sample, prepared } from './data.js';
+import { clock_of, speeds_of } from './playback.js';
 import { View } from './view.js';
 import { element, write_sources, write_words } from './words.js';
 
@@ -34,12 +35,11 @@ export function show_runs(page) {
     document.querySelectorAll('#runs .swatch').forEach((s, i) => { s.style.background = pen_sample(colours[i % colours.length], dashes[i % dashes.length]); });
   }
 
-  // Digits of the clock by the length of the run.
-  const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(Math.max(end - start, 1e-9)))));
+  const told = clock_of(start, end);
   function seek(t) {
     time = Math.min(end, Math.max(start, t));
     $('time').value = time;
-    $('clock').textContent = `${time.toFixed(digits)} s`;
+    $('clock').textContent = told(time);
     view?.go(time);
     charts.at(time);
   }
@@ -80,13 +80,10 @@ export function show_runs(page) {
     $('time').min = start;
     $('time').max = end;
     $('time').oninput = () => { pause(); seek(Number($('time').value)); };
-    const duration = end - start || 1;
-    const speeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 1000];
-    // As fast as it is, where that takes between 3 s and a minute.
-    const chosen = speeds.reduce((a, b) => Math.abs(Math.log(duration / b / (duration < 3 ? 6 : duration > 60 ? 30 : duration))) < Math.abs(Math.log(duration / a / (duration < 3 ? 6 : duration > 60 ? 30 : duration))) ? b : a);
-    for (const s of speeds) {
-      const option = element('option', s === 1 ? 'as it is' : `× ${s}`, { value: s });
-      option.selected = s === chosen;
+    const { all, chosen } = speeds_of(end - start);
+    for (const { value, name } of all) {
+      const option = element('option', name, { value });
+      option.selected = value === chosen;
       $('speed').append(option);
     }
     $('play').onclick = () => playing ? pause() : play();

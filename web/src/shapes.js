@@ -63,6 +63,20 @@ function hull_of(body) {
   return index.length > 0 ? index : null;
 }
 
+// How thick what stands for hinges, rods and dots of a body is, half of it: a part of the whole system, but no more than
+// of the shortest way from one hinge of the body to another, and what can be seen at least.
+const of_system = 0.011, of_way = 0.18, least_seen = 0.0008;
+export function thickness_of(body, size) {
+  const ends = [new Vector3(), ...body.hung.map(h => h.rest.p)], extent = [];
+  if (body.tip) ends.push(new Vector3().fromArray(body.tip));
+  if (body.end >= 0) ends.push(new Vector3().fromArray(body.points, 3 * body.end));
+  const ways = ends.flatMap((p, i) => ends.slice(0, i).map(q => p.distanceTo(q))).filter(d => d > 1e-9 * size);
+  // What carries nothing is as long as it is.
+  if (body.box) extent.push(Math.max(Math.hypot(...body.box.pose.slice(0, 3)), ...body.box.edges));
+  const way = ways.length ? Math.min(...ways) : Math.min(...extent.filter(d => d > 0));
+  return Math.max(least_seen * size, Math.min(of_system * size, of_way * way));
+}
+
 export class Shapes {
   // size: of the whole system [m]; colours: of flexible and rigid bodies
   constructor(motion, size, colours, faint) {
@@ -76,13 +90,12 @@ export class Shapes {
     this.joint = solid(colours.joint);
     this.skin = solid(colours.flexible, { side: DoubleSide, transparent: true, opacity: faint ? 0.25 : 0.45, flatShading: true });
     this.ghost = new LineDashedMaterial({ color: colours.ghost, dashSize: size * 0.02, gapSize: size * 0.015 });
-    this.radius = size * 0.011; // of joints, rods and dots
-    this.thinnest = size * 0.003; // half of what is thinner would not be seen
     this.faceted = solid(colours.flexible, { side: DoubleSide, flatShading: true });
     this.given = solid(colours.rigid, { side: DoubleSide, flatShading: true });
-    this.items = motion.bodies.map(body => this.make(body));
-    const joints = motion.bodies.filter(body => body.moves && body.parent >= 0);
-    this.joints = new InstancedMesh(new SphereGeometry(this.radius * 1.35, 16, 12), this.joint, joints.length);
+    this.items = motion.bodies.map(body => this.make(body, thickness_of(body, size)));
+    const joints = motion.bodies.filter(body => body.moves && body.parent >= 0), radius_of = body => this.items[motion.bodies.indexOf(body)].radius;
+    this.balls = joints.map(body => 1.35 * Math.min(radius_of(body), radius_of(motion.bodies[body.parent])));
+    this.joints = new InstancedMesh(new SphereGeometry(1, 16, 12), this.joint, joints.length);
     this.joints.frustumCulled = false;
     this.jointed = joints;
     this.group.add(this.joints);
@@ -94,8 +107,9 @@ export class Shapes {
     this.group.add(this.axes);
   }
 
-  make(body) {
-    const item = { body, group: new Group() };
+  make(body, radius) {
+    // Half of what is thinner would not be seen.
+    const item = { body, radius, thinnest: 0.27 * radius, group: new Group() };
     if (body.kind === 'line') {
       item.ring = body.sections?.rectangle ? rectangle : ellipse;
       const around = item.ring.length, count = (body.count + 2) * around; // two rings more close the ends
@@ -115,7 +129,7 @@ export class Shapes {
       item.faces.frustumCulled = false;
       this.group.add(item.faces);
     } else if (body.kind === 'points') {
-      item.dots = new InstancedMesh(new SphereGeometry(this.radius * 0.8, 10, 8), this.flexible, body.count);
+      item.dots = new InstancedMesh(new SphereGeometry(radius * 0.8, 10, 8), this.flexible, body.count);
       item.dots.frustumCulled = false;
       this.group.add(item.dots);
       const index = hull_of(body);
@@ -128,7 +142,7 @@ export class Shapes {
         const away = k => a.fromArray(body.points, 3 * k).lengthSq();
         item.chain = Array.from({ length: body.count }, (_, k) => k).sort((k, l) => away(k) - away(l));
         item.rods = item.chain.slice(1).map(() => {
-          const rod = new Mesh(new CylinderGeometry(this.radius * 0.6, this.radius * 0.6, 1, 10), this.flexible);
+          const rod = new Mesh(new CylinderGeometry(radius * 0.6, radius * 0.6, 1, 10), this.flexible);
           rod.frustumCulled = false;
           this.group.add(rod);
           return rod;
@@ -160,7 +174,7 @@ export class Shapes {
       item.group.add(new Mesh(geometry, this.given));
       return;
     }
-    const least = this.radius * 1.6;
+    const { radius } = item, least = radius * 1.6;
     if (body.box) {
       const [x, y, z] = body.box.edges.map(e => Math.max(e, least));
       const box = new Mesh(new BoxGeometry(x, y, z), this.rigid);
@@ -174,8 +188,8 @@ export class Shapes {
     if (body.tip) ends.push(new Vector3().fromArray(body.tip));
     for (const end of ends) {
       const length = end.distanceTo(from);
-      if (length < this.radius) continue;
-      const rod = new Mesh(new CylinderGeometry(this.radius * 0.5, this.radius * 0.5, length, 10), this.rigid);
+      if (length < radius) continue;
+      const rod = new Mesh(new CylinderGeometry(radius * 0.5, radius * 0.5, length, 10), this.rigid);
       rod.position.copy(from).add(end).multiplyScalar(0.5);
       rod.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), a.copy(end).sub(from).normalize());
       item.group.add(rod);
@@ -211,7 +225,7 @@ export class Shapes {
     this.jointed.forEach((body, i) => {
       const parent = this.motion.bodies[body.parent], hung = parent.hung.find(h => h.child === this.motion.bodies.indexOf(body));
       a.copy(parent.flexible ? hung.drawn.p : hung.rest.p).applyQuaternion(parent.pose.q).add(parent.pose.p);
-      this.joints.setMatrixAt(i, matrix.makeTranslation(a));
+      this.joints.setMatrixAt(i, matrix.makeScale(this.balls[i], this.balls[i], this.balls[i]).setPosition(a));
       this.links.geometry.attributes.position.setXYZ(2 * i, a.x, a.y, a.z).setXYZ(2 * i + 1, body.pose.p.x, body.pose.p.y, body.pose.p.z);
     });
     this.links.geometry.attributes.position.needsUpdate = true;
@@ -221,7 +235,7 @@ export class Shapes {
   }
 
   // A tube around the deformed middle line, with the sections that the body has.
-  bend({ body, tube, ring }, scale) {
+  bend({ body, tube, ring, radius, thinnest }, scale) {
     const { position, normal: outward } = tube.geometry.attributes, n = body.count, around = ring.length;
     const widths = body.sections?.widths;
     for (let k = 0; k < n; ++k) {
@@ -232,8 +246,8 @@ export class Shapes {
       if (k === 0 || body.turns) this.motion.y_axis(body, k, scale, side);
       side.addScaledVector(b, -side.dot(b)).normalize();
       normal.crossVectors(side, b);
-      const y = widths ? widths[2 * k] : this.radius, z = widths ? widths[2 * k + 1] : this.radius;
-      const u = Math.max(y, this.thinnest), v = Math.max(z, this.thinnest);
+      const y = widths ? widths[2 * k] : radius, z = widths ? widths[2 * k + 1] : radius;
+      const u = Math.max(y, thinnest), v = Math.max(z, thinnest);
       const ends = k === 0 ? n : k === n - 1 ? n + 1 : -1;
       for (let j = 0; j < around; ++j) {
         const [fy, fz, ny, nz] = ring[j], length = Math.hypot(ny / u, nz / v), p = ny / u / length, q = nz / v / length;
@@ -250,9 +264,9 @@ export class Shapes {
   }
 
   // The two sides of a plate, half its thickness from its middle surface, and its rim.
-  bend_sheet({ body, surface, sheet: { rim } }, scale) {
+  bend_sheet({ body, surface, sheet: { rim }, thinnest }, scale) {
     const { position } = surface.geometry.attributes, n = body.count, columns = body.columns, rows = n / columns;
-    const half = Math.max(body.thickness ?? 0, 0.7 * this.thinnest) / 2;
+    const half = Math.max(body.thickness ?? 0, 0.7 * thinnest) / 2;
     for (let k = 0; k < n; ++k) {
       const r = Math.floor(k / columns), j = k % columns;
       this.motion.point(body, j > 0 ? k - 1 : k, scale, a);

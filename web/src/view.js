@@ -3,16 +3,17 @@ import {
   AmbientLight, Box3, BufferGeometry, Color, DirectionalLight, GridHelper, Group, Line, LineBasicMaterial, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import { Arrows, greatest_of, longest_in_words } from './arrows.js';
+import { Arrows, greatest_of, longest_in_words, measured } from './arrows.js';
 import { palette } from './data.js';
 import { Motion } from './motion.js';
 import { Pace } from './pace.js';
 import { Shapes } from './shapes.js';
+import { exponent_of, in_decade } from './ticks.js';
 
 // 1, 2 or 5 times a power of ten, at most x.
 function round_down(x) {
-  const decade = 10 ** Math.floor(Math.log10(x));
-  return [5, 2, 1].find(k => k * decade <= x * 1.0001) * decade;
+  const k = exponent_of(x);
+  return in_decade([5, 2, 1].find(m => in_decade(m, k) <= x * 1.0001), k);
 }
 
 export class View {
@@ -36,6 +37,9 @@ export class View {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.draw());
     this.controls.addEventListener('start', () => { this.turned = true; });
+    // The controls tell of no change below a millimetre, which may be all of a system.
+    this.seen_from = new Vector3();
+    for (const moved of ['wheel', 'pointermove']) this.renderer.domElement.addEventListener(moved, () => requestAnimationFrame(() => { if (!this.seen_from.equals(this.camera.position)) this.draw(); }));
     this.measure();
     this.follow_from = this.root(new Vector3());
     new ResizeObserver(() => this.resize()).observe(element);
@@ -72,7 +76,7 @@ export class View {
       }
     }
     if (box.isEmpty()) box.expandByPoint(new Vector3());
-    this.size = Math.max(first.getSize(point).length(), 1e-3);
+    this.size = first.getSize(point).length() || box.getSize(point).length() || 1e-3; // a point has none
     // A system that goes far away is followed, and what it takes up at the beginning is looked at.
     this.show.follow = travel > 2 * this.size;
     this.box = this.show.follow ? first : box;
@@ -110,7 +114,7 @@ export class View {
 
   add_ground(dark) {
     const extent = this.box.getSize(new Vector3()).length();
-    this.cell = round_down(Math.max(extent / 8, 1e-6));
+    this.cell = round_down((extent || this.size) / 8);
     const cells = 2 * Math.ceil(0.9 * extent / this.cell);
     const grid = new GridHelper(cells * this.cell, cells, dark ? '#3d4650' : '#b6bec8', dark ? '#262d36' : '#dde3e9');
     const flat = this.flat >= 0 && Math.abs(this.up.getComponent(this.flat)) < 0.5;
@@ -131,7 +135,7 @@ export class View {
   write_caption() {
     const arrows = this.show.sensors ? longest_in_words(this.greatest) : '', hidden = [arrows && 'arrows', this.show.trails && 'trails'].filter(Boolean);
     const words = this.scale === 1 ? arrows && `longest arrows: ${arrows}` : hidden.length && `${hidden.join(' and ')} at Deformation × 1 only`;
-    const caption = [this.grid.visible && `squares of ${this.cell} m`, words].filter(Boolean).join('; '), place = document.getElementById('cell');
+    const caption = [this.grid.visible && `squares of ${measured(this.cell, 'm')}`, words].filter(Boolean).join('; '), place = document.getElementById('cell');
     if (place.textContent !== caption) place.textContent = caption;
   }
 
@@ -197,7 +201,7 @@ export class View {
     const direction = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] }[from];
     const d = direction ? new Vector3().fromArray(direction) : this.home();
     this.camera.up.copy(Math.abs(d.dot(this.up)) > 0.99 ? (from === 'z' ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1)) : this.up);
-    const distance = Math.max(this.distance_of(half, d.normalize()), 1e-6);
+    const distance = this.distance_of(half, d.normalize()) || 3 * this.size;
     this.camera.near = distance / 200;
     this.camera.far = distance * 50;
     this.camera.updateProjectionMatrix();
@@ -263,5 +267,6 @@ export class View {
     if (!this.scene || !this.width) return; // a frame of the wrong size would be drawn twice
     this.key.position.copy(this.camera.position).addScaledVector(this.up, this.size);
     this.renderer.render(this.scene, this.camera);
+    this.seen_from.copy(this.camera.position);
   }
 }

@@ -4,11 +4,13 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Vector3 } from 'three';
+import { thickness_of } from '../src/shapes.js';
 import { drawn, grouped, quantities, unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
-import { greatest_of, longest_in_words } from '../src/arrows.js';
+import { greatest_of, longest_in_words, measured } from '../src/arrows.js';
 import { Pace } from '../src/pace.js';
-import { label_of } from '../src/ticks.js';
+import { clock_of, speeds_of } from '../src/playback.js';
+import { axis_ticks, ends_of, labels_of } from '../src/ticks.js';
 import { certificate_rows } from '../src/words.js';
 import { in_browser, opened, text } from './browser.mjs';
 import { check_gltf } from './gltf.mjs';
@@ -38,14 +40,57 @@ function check_motion(file) {
 
 // Every tick says its own value, and those of one axis have as many digits.
 function check_ticks() {
-  const labels = (...ticks) => ticks.map(v => label_of(v, ticks, false)).join(' ');
-  assert.equal(labels(-1e-7, -7.5e-8, -5e-8, -2.5e-8, 0), '-1.0e-7 -7.5e-8 -5.0e-8 -2.5e-8 0');
-  assert.equal(labels(0, 2e-5, 4e-5), '0 2e-5 4e-5');
-  assert.equal(labels(1e6, 1.25e6, 1.5e6), '1.00e+6 1.25e+6 1.50e+6');
+  const labels = (...ticks) => labels_of(ticks).join(' ');
+  assert.equal(labels(-1e-7, -7.5e-8, -5e-8, -2.5e-8, 0), '-100e-9 -75e-9 -50e-9 -25e-9 0');
+  assert.equal(labels(0, 2e-5, 4e-5), '0 20e-6 40e-6');
+  assert.equal(labels(1e6, 1.25e6, 1.5e6), '1.00e6 1.25e6 1.50e6');
   assert.equal(labels(0, 0.25, 0.5), '0 0.25 0.50');
   assert.equal(labels(6000, 6020), '6000 6020');
   assert.equal(labels(7000000, 7000000.25, 7000000.5), '7000000.00 7000000.25 7000000.50');
-  assert.equal(labels(1e-4, 1e-4 + 2e-12), '1.00000000e-4 1.00000002e-4');
+  assert.equal(labels(1e-4, 1e-4 + 2e-12), '100.000000e-6 100.000002e-6');
+  assert.equal(labels(0, 5e-4, 1e-3), '0 0.0005 0.0010');
+}
+
+// Axes of every size have ticks, in steps of 1, 2 or 5, and those that stand side by side have room.
+function check_axes() {
+  const how = { length: 400, apart: 40, across: true };
+  for (let k = -300; k <= 300; k += 3) {
+    for (const m of [1, 1.7, 4, 9.9]) {
+      const high = Number(`${m}e${k}`), ticks = axis_ticks(-0.3 * high, high, how), names = ticks.map(([, name]) => name);
+      assert.ok(ticks.length >= 3 && ticks.length <= 12 && new Set(names).size === ticks.length, `to ${high}: ${names}`);
+      ticks.forEach(([v, name]) => assert.ok(v >= -0.3 * high && v <= high && Math.abs(+name - v) <= 1e-9 * high, `${name} at ${v}`));
+      assert.ok(names.every(name => (name.split('e')[1] ?? 0) % 3 === 0), names.join());
+      assert.ok(axis_ticks(high, 50 * high, { ...how, log: true }).length >= 3);
+    }
+  }
+  assert.deepEqual(axis_ticks(1.9999, 2, how).map(([, name]) => name), ['1.99990', '1.99992', '1.99994', '1.99996', '1.99998', '2.00000']);
+  assert.deepEqual(axis_ticks(0, 1e-5, how).map(([, name]) => name), ['0', '2e-6', '4e-6', '6e-6', '8e-6', '10e-6']);
+  assert.ok(axis_ticks(1e-300, 1e300, { ...how, log: true }).length >= 5);
+  assert.deepEqual(axis_ticks(2, 2 + 1e-15, how), [], 'what rounding parts has no ticks between');
+  assert.deepEqual(ends_of(0, 0, 0.06), [-1, 1]);
+}
+
+// Runs of every length can be watched, and the clock tells a thousandth of each.
+function check_playback() {
+  for (const [run, speed] of [[3.8, 1], [60, 1], [1, 0.2], [80, 2], [100, 5]]) assert.equal(speeds_of(run).chosen, speed, `${run} s`);
+  for (let k = -12; k <= 12; ++k) {
+    for (const m of [1, 1.7, 4, 9.9]) {
+      const length = Number(`${m}e${k}`), { all, chosen } = speeds_of(length), seconds = length / chosen;
+      assert.ok(all.some(s => s.value === chosen) && all.some(s => s.value === 1));
+      if (length < 1 || length > 100) assert.ok(seconds > 9 && seconds < 24, `${length} s in ${seconds} s`);
+      const told = clock_of(0, length);
+      assert.ok(told(0.501 * length) !== told(0.5 * length) && Math.abs(parseFloat(told(length)) - length) < 1e-3 * length, `${told(length)} for ${length}`);
+    }
+  }
+  assert.deepEqual([clock_of(0, 3.8)(1), clock_of(0, 1e-5)(3.7e-6), clock_of(0, 1e7)(2e6), clock_of(1.9999, 2)(1.99995)], ['1.000 s', '3.70e-6 s', '2000000 s', '1.99995000 s']);
+}
+
+// A hinge is no larger than a part of the way to the next one, however long the whole is, and can be seen.
+function check_thickness() {
+  const link = (...ways) => ({ end: -1, hung: ways.map(way => ({ rest: { p: new Vector3(way, 0, 0) } })), box: { pose: [0.05, 0, 0, 1, 0, 0, 0], edges: [0.1, 0.1, 0.1] } });
+  const of = (body, size) => +thickness_of(body, size).toPrecision(3);
+  assert.deepEqual([of(link(1), 2), of(link(0.1), 20), of(link(1, 1.1), 20), of(link(), 20), of(link(1e-6), 1)], [0.022, 0.018, 0.018, 0.018, 0.0008]);
+  assert.ok(thickness_of({ end: -1, hung: [] }, 1) > 0);
 }
 
 // Runs lie over each other in the same unit, also where an angle turns far in one of them alone.
@@ -101,6 +146,8 @@ function check_common_scale() {
   const greatest = greatest_of([arrow('N', 0.05), arrow('N m', 0.3), arrow('N', 2860), arrow('m/s^2', 0)], 10);
   assert.equal(greatest.get('N'), 2860);
   assert.equal(longest_in_words(greatest), '2.86 kN, 300 mN m');
+  assert.deepEqual([5e-6, 2e-4, 1e-3, 0.05, 0.1, 0.5, 200, 1000, 1e8].map(v => measured(v, 'm')), ['5 µm', '0.2 mm', '1 mm', '50 mm', '0.1 m', '0.5 m', '200 m', '1 km', '100000 km']);
+  assert.deepEqual([measured(3.2e-7, 'N'), measured(9.81, 'm/s^2')], ['320 nN', '9.81 m/s²']);
 }
 
 const picture = page => page.evaluate(() => document.querySelector('#view canvas').toDataURL());
@@ -270,6 +317,43 @@ async function check_adapts(browser, troubles) {
   await page.close();
 }
 
+// A run of some microseconds, of sizes and energies that are as small: axes, clock, speed and squares are of its scale.
+async function check_small(browser, troubles) {
+  writeFileSync(join(folder, 'mirror.yaml'), mirror);
+  run('run', join(folder, 'mirror.yaml'), '--out', join(folder, 'mirror'));
+  const page = await opened(browser, join(folder, 'mirror/report.html'), 't=0&theme=light', troubles);
+  const axes = await page.evaluate(async () => {
+    const { charts } = document.getElementById('charts');
+    charts.all();
+    await new Promise(done => setTimeout(done)); // they are drawn behind this
+    return charts.panels.map(({ group, chart }) => ({ title: group.title, labels: chart.axes.map(a => a._values) }));
+  });
+  for (const { title, labels: [times, values] } of axes) {
+    assert.deepEqual(times, ['0', '5e-6', '10e-6', '15e-6', '20e-6'], title);
+    assert.ok(values.length >= 3 && new Set(values).size === values.length, `${title}: ${values}`);
+  }
+  assert.match(await text(page, '#cell'), /^squares of \d+ µm/);
+  const [size, nearest] = await page.evaluate(() => { const { view } = document.getElementById('view'); return [view.size, Math.min(...view.shapes[0].items.map(i => i.radius))]; });
+  assert.ok(size > 5e-5 && size < 2e-4 && nearest < 0.012 * size, `${nearest} of ${size}`);
+  const far = await picture(page);
+  await page.hover('#view canvas');
+  await page.mouse.wheel(0, -400);
+  await page.waitForFunction(before => document.querySelector('#view canvas').toDataURL() !== before, far); // it is drawn nearer
+  assert.equal(await text(page, '#clock'), '0.00e-6 s');
+  assert.equal(await page.inputValue('#speed'), '0.000001');
+  await page.focus('#view');
+  await page.keyboard.press('End');
+  assert.equal(await text(page, '#clock'), '20.00e-6 s');
+  await page.close();
+}
+const mirror = `format: withy/1
+time: {end: 20e-6, output: 0.1e-6}
+bodies: {b: {type: rigid, mass: 1e-9, center_of_mass: [50e-6, 0, 0], inertia: [1e-19, 1e-19, 1e-19, 0, 0, 0]}}
+hinges: {j: {type: revolute, axis: [0, 1, 0], parent: world, child: b}}
+loads: {m: {type: hinge-spring, hinge: j, stiffness: 1e-6}}
+initial: {hinges: {j: {position: [1e-6]}}}
+`;
+
 // Every column is on the page: attitudes as angles.
 async function check_columns(browser, troubles) {
   const page = await opened(browser, join(folder, 'craft/report.html'), 't=2', troubles);
@@ -334,6 +418,9 @@ function check_looks(file) {
 }
 
 check_ticks();
+check_axes();
+check_playback();
+check_thickness();
 check_groups();
 check_outputs();
 check_gaps();
@@ -368,6 +455,7 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   await check_adapts(browser, troubles);
   await check_landmarks(browser, folder, run, scenes, troubles);
   await check_controls(browser, troubles);
+  await check_small(browser, troubles);
   await check_columns(browser, troubles);
   await check_several(browser, troubles);
   await check_long_runs(browser, folder, run, troubles);

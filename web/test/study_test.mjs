@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { execSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
+import { number, number_among, number_within } from '../src/numbers.js';
 import { scale_of } from '../src/studies/figure.js';
 import { name_within, names_beside } from '../src/studies/sweep.js';
 import { in_browser, opened, says, text } from './browser.mjs';
@@ -22,6 +23,26 @@ function check_log_ticks() {
   assert.deepEqual(told(2.1, 4.8), ['2.5', '3.0', '3.5', '4.0', '4.5', '5.0']);
   assert.deepEqual(told(1, 50), ['1', '2', '5', '10', '20', '50']);
   assert.deepEqual(told(1, 1e4), ['1', '10', '100', '1000', '10000']);
+}
+
+// Numbers of a narrow range are told apart, others have four digits.
+function check_numbers() {
+  assert.deepEqual([0.8113306, 0.8113613].map(number_within(0.8113306, 0.8113613)), ['0.8113306', '0.8113613']);
+  assert.deepEqual([2.41e-18, 2.4100123e-18, 0, null].map(number_within(2.41e-18, 2.4100123e-18)), ['2.41e-18', '2.4100123e-18', '0', '–']);
+  assert.deepEqual([1, 12345].map(number_within(1, 12345)), ['1', '12350']);
+  assert.deepEqual([1.9999, 2].map(number_among([1.9999, NaN, 2], 5, true)), ['1.9999000', '2.0000000']);
+  assert.equal(number_within(7e32, 7e32 * (1 + 1e-15))(7e32), '7.00e32', 'rounding tells nothing apart');
+  assert.deepEqual([number(1e-4), number(123456), number(0.5, 5, true), number(0), number(NaN)], ['1.00e-4', '1.23e5', '0.50000', '0', '–']);
+}
+
+// What is zero stands below all decades, where anything is.
+function check_zeros() {
+  const scale = values => scale_of(values, { log: true, from: 400, to: 0, zeros: true }), told = at => at.ticks.map(([, name]) => name);
+  const some = scale([0, 0.05, 3]);
+  assert.deepEqual(told(some), ['0', '0.05', '0.1', '0.2', '0.5', '1', '2']);
+  assert.ok(some(0) < 400 && some(0.05) < some(0) - 20 && some(3) > 0);
+  assert.ok(!told(scale([0.05, 3])).includes('0'));
+  assert.deepEqual(told(scale([0, 0])), ['0']);
 }
 
 // Of a name that is too long the end stands, and its value whole.
@@ -54,6 +75,7 @@ async function check_trade(browser, folder, run, troubles) {
   const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
   const marks = page.locator('.figures .mark');
   assert.equal(await marks.count(), done.length);
+  assert.deepEqual(await page.$$eval('.answer li', all => all.map(e => /^Within ([\d.]+ %):/.exec(e.textContent)[1])), ['10 %', '1 %', '0.1 %']);
   const at = await marks.evaluateAll(all => all.map(m => /translate\(([-\d.]+) ([-\d.]+)\)/.exec(m.getAttribute('transform')).slice(1).map(Number)));
   done.forEach((p, i) => done.forEach((q, j) => {
     if (q.cpu_seconds > 1.05 * p.cpu_seconds) assert.ok(at[j][0] > at[i][0], 'dearer is further to the right');
@@ -78,10 +100,24 @@ async function check_trade(browser, folder, run, troubles) {
   await shot(page, 'trade-dark');
   assert.ok((await page.pdf()).length > 20000, 'it prints');
   await page.close();
+  await check_asked(browser, folder, run, troubles);
   // The command of the page is the model's run.
   const { command, steps } = page_data(join(out, 'report.html')).points.at(-1);
   execSync(`${command.replace('withy', withy)} --out ${join(folder, 'point')}`, { stdio: 'ignore' });
   assert.equal(JSON.parse(readFileSync(join(folder, 'point/run.json'))).steps, steps);
+}
+
+// The errors that are asked for are those of the command and of the page.
+async function check_asked(browser, folder, run, troubles) {
+  const out = join(folder, 'asked');
+  const said = run('trade', join(scenes, 'driven-arm.yaml'), '--set', 'time.end=0.3', '--modes', '1,2', '--tolerances', '1e-4', '--accuracy', '5%,0.000001%', '--out', out);
+  assert.match(said, /within 5 % /);
+  const { points, cheapest } = page_data(join(out, 'report.html'));
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles), lines = await page.$$eval('.answer li', all => all.map(e => e.textContent));
+  assert.equal(lines.length, 2);
+  assert.ok(lines[0].startsWith(`Within 5 %: ${points[cheapest[0].point].formulation}, `), lines[0]);
+  assert.match(lines[1], /^Within 1\.00e-6 %: none of these models$/);
+  await page.close();
 }
 
 // Branches are the columns of modes.csv; lines of the rate rise by one rate a rate.
@@ -274,6 +310,19 @@ async function check_sweep(browser, folder, run, troubles) {
   await page.close();
 }
 
+// Where all cases lie close together both ends of an axis are told apart, and so are the numbers of notes and tables.
+async function check_narrow(browser, folder, run, troubles) {
+  const out = join(folder, 'narrow');
+  run('sweep', 'run', write_plan(folder, 'narrow.yaml', 'vary:\n  bodies.link1.mass_per_length: {uniform: {from: 1.33997, to: 1.34003}}\ncases: 6\n'), '--out', out);
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles), { columns } = page_data(join(out, 'report.html'));
+  const ends = await page.$$eval('.pairs text:not(.name)', all => all.map(e => e.textContent));
+  for (const c of columns) for (const v of [c.least, c.greatest]) assert.equal(ends.filter(e => Math.abs(e - v) < 2e-3 * (c.greatest - c.least)).length, 2, `${c.name}: ${v} of ${ends}`);
+  const tables = await page.$$eval('table.rows tr', rows => rows.map(r => [...r.children].map(e => e.textContent))), [head] = tables;
+  for (const row of tables.slice(1)) assert.notEqual(row[head.indexOf('least')], row[head.indexOf('greatest')], row.join());
+  await shot(page, 'narrow-light');
+  await page.close();
+}
+
 // Bars are the rows of indices.csv.
 async function check_indices(browser, folder, run, troubles) {
   const out = join(folder, 'sobol');
@@ -323,6 +372,20 @@ async function check_printed_whole(page) {
   assert.equal(printed, seen, 'all lines are printed');
 }
 
+// On the page of a phone figures have letters that can be read, tables keep their lines, and nothing is wider than it.
+async function check_narrow_page(page, name) {
+  const before = page.viewportSize();
+  await page.setViewportSize({ width: 420, height: 900 });
+  await page.waitForFunction(() => [...document.querySelectorAll('.study-figure svg')].every(svg => svg.getScreenCTM().a > 0.99));
+  const sizes = await page.$$eval('.study-figure text', all => all.map(e => parseFloat(getComputedStyle(e).fontSize) * e.ownerSVGElement.getScreenCTM().a));
+  assert.ok(Math.min(...sizes) > 10.5, `letters of ${Math.min(...sizes)} px on the page of ${name}`);
+  const lines = await page.$$eval('.said .columns', all => all.map(e => [e.textContent.replace(/\n$/, '').split('\n').length, Math.round(e.getBoundingClientRect().height / parseFloat(getComputedStyle(e).lineHeight))]));
+  if (name === 'response') assert.ok(lines.length > 0);
+  for (const [written, seen] of lines) assert.ok(seen <= written + 1, `${written} lines of a table take ${seen}`); // and a bar to scroll with
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `the page of ${name} is too wide`);
+  await page.setViewportSize(before);
+}
+
 // Words and curves of the files: each point told by the pointer, curves taken away by their names.
 async function check_figures(browser, folder, run, troubles) {
   const measured = join(scenes, 'measured/pendulum.csv');
@@ -346,6 +409,7 @@ async function check_figures(browser, folder, run, troubles) {
     if (name === 'terms') assert.ok(samples.length > 2, 'a line for each term');
     for (const [length, dashes] of samples) assert.ok(length >= dashes.split(' ').reduce((sum, d) => sum + +d, 0), `${length} px of ${dashes} on the page of ${name}`);
     await shot(page, `${name}-light`);
+    await check_narrow_page(page, name);
     await check_printed_whole(page);
     await page.close();
   }
@@ -366,6 +430,28 @@ async function check_figures(browser, folder, run, troubles) {
   await page.close();
 }
 
+// Where nothing acts there is a sentence, and no axis of numbers that are none.
+async function check_nothing(browser, folder, run, troubles) {
+  const file = join(folder, 'still.yaml');
+  writeFileSync(file, `format: withy/1
+time: {end: 1, output: 0.1}
+bodies: {b: {type: beam, length: 1, mass_per_length: 1, bending_z: {stiffness: 0.5, modes: 2, family: clamped-free}}}
+hinges: {j: {type: revolute, axis: [0, 1, 0], parent: world, child: b}}
+`);
+  run('terms', file, '--out', join(folder, 'still-terms'));
+  const page = await opened(browser, join(folder, 'still-terms/report.html'), 'theme=light', troubles);
+  assert.equal(await page.locator('.study-figure').count(), 0);
+  assert.deepEqual(await page.$$eval('.figures p', all => all.map(e => e.textContent)), ['hinges', 'bending'].map(name => `${name} [N/sqrt(kg)]: zero throughout, but for rounding.`));
+  await page.close();
+  // Errors of zero stand at 0, and there is no line of a reference that is off by nothing.
+  run('trade', file, '--modes', '1,2', '--tolerances', '1e-4', '--integrators', 'dopri5', '--out', join(folder, 'still-trade'));
+  const trade = await opened(browser, join(folder, 'still-trade/report.html'), 'theme=light', troubles);
+  const names = await trade.$$eval('.figures .axes text', all => all.map(e => e.textContent));
+  assert.ok(names.includes('0') && !names.some(name => /^\d+e/.test(name)), names.join());
+  assert.doesNotMatch(await text(trade, '#study'), /error of the reference|dotted line/);
+  await trade.close();
+}
+
 // What motors have to give is on the page of the run that tells it.
 async function check_inverse(browser, folder, run, troubles) {
   const out = join(folder, 'inverse');
@@ -377,11 +463,13 @@ async function check_inverse(browser, folder, run, troubles) {
 }
 
 check_log_ticks();
+check_zeros();
+check_numbers();
 check_names();
 check_names_of_lines();
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
-  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_one_at_a_time, check_figures]) await check(browser, folder, run, troubles);
+  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_narrow, check_indices, check_one_at_a_time, check_figures, check_nothing]) await check(browser, folder, run, troubles);
   assert.deepEqual(troubles, []);
   console.log('the pages of studies show what their files say');
 });

@@ -1,5 +1,5 @@
 // Figures of studies: SVG with axes, marks that answer the pointer, and a note beside it.
-import { is_rounding, label_of } from '../ticks.js';
+import { axis_ticks, ends_of } from '../ticks.js';
 
 const svg_names = 'http://www.w3.org/2000/svg';
 export function draw(name, attributes = {}, text) {
@@ -9,18 +9,12 @@ export function draw(name, attributes = {}, text) {
   return e;
 }
 
-export const number = v => v == null || Number.isNaN(v) ? '–' : v === 0 ? '0'
-  : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2).replace('e+', 'e') : `${+v.toPrecision(4)}`;
-
-// Numbers of one range, with the digits that tell a thousandth of it apart; with four where the range is as large as they.
-export function number_within(least, greatest) {
-  const range = greatest - least, largest = Math.max(Math.abs(least), Math.abs(greatest));
-  const digits = range > 0 ? Math.min(15, Math.ceil(Math.log10(largest / range)) + 3) : 4;
-  return digits <= 4 ? number : v => Number.isFinite(v) ? `${+v.toPrecision(digits)}` : number(v);
-}
-
 // A scale from data to pixels with its ticks.
-export function scale_of(values, { log = false, from, to, include = [], room = 0.05 }) {
+// zeros: of decades, what is zero has a place of its own at the beginning, where anything is
+const place_of_zero = 0.05, beyond_zero = 0.13; // parts of the axis
+export function scale_of(values, { log = false, from, to, include = [], room = 0.05, across = to > from, zeros = false }) {
+  const begin = from, none = zeros && values.includes(0);
+  if (none) from += beyond_zero * (to - from);
   const shown = values.filter(v => Number.isFinite(v) && (!log || v > 0));
   const tell = v => log ? Math.log10(v) : v;
   let low = Infinity, high = -Infinity;
@@ -29,40 +23,28 @@ export function scale_of(values, { log = false, from, to, include = [], room = 0
     high = Math.max(high, tell(v));
   }
   if (low > high) [low, high] = log ? [-1, 1] : [0, 1];
-  if (is_rounding(low, high)) [low, high] = low === 0 || log ? [low - 1, high + 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
-  const more = room * (high - low);
-  low -= include.length && Math.min(...include.map(tell)) <= low ? 0 : more;
-  high += more;
-  const at = v => from + (tell(v) - low) / (high - low) * (to - from);
-  const most = Math.abs(to - from) / (Math.abs(to - from) > 300 ? 80 : 50);
-  at.ticks = log ? log_ticks(low, high, most) : ticks(low, high, most);
+  const [least, most] = ends_of(low, high, room, log ? 1 : undefined), from_include = include.length && low < high && Math.min(...include.map(tell)) <= low;
+  if (!from_include) low = least;
+  high = most;
+  const at = v => (none && v === 0 ? begin + place_of_zero * (to - begin) : from + (tell(v) - low) / (high - low) * (to - from)), value = v => (log ? 10 ** v : v);
+  const length = Math.abs(to - from);
+  at.ticks = none && !shown.length ? [] : axis_ticks(value(low), value(high), { length, apart: length > 300 ? 80 : 50, log, across });
+  if (none) at.ticks.unshift([0, '0']);
   at.low = low;
   at.high = high;
   return at;
 }
-function ticks(low, high, most) {
-  const least = (high - low) / Math.max(2, most), decade = 10 ** Math.floor(Math.log10(least));
-  const step = [1, 2, 5, 10].map(k => k * decade).find(s => s >= least * 0.999), out = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) out.push(k * step);
-  return out.map(v => [v, label_of(v, out, false).replace('e+', 'e')]);
-}
-// Powers of ten, and where these are few twice and five times them; where even those are less than three, round numbers.
-const few_decades = 2.2;
-function log_ticks(low, high, most) {
-  const out = [], thin = Math.max(1, Math.round((high - low) / 8));
-  for (let k = Math.floor(low); k <= high; ++k) {
-    const name = k >= -3 && k <= 4 ? `${+(10 ** k).toPrecision(1)}` : `1e${k}`;
-    if (k >= low && k % thin === 0) out.push([10 ** k, name]);
-    if (high - low < few_decades) for (const m of [2, 5]) if (k + Math.log10(m) >= low && k + Math.log10(m) <= high) out.push([m * 10 ** k, k >= -3 && k <= 4 ? `${+(m * 10 ** k).toPrecision(1)}` : `${m}e${k}`]);
-  }
-  if (out.length < 3 && high - low < few_decades) return ticks(10 ** low, 10 ** high, most);
-  return out;
-}
 
-// Axes with their labels; what is drawn goes to `marks`, cut off at the frame.
+// How wide a figure can be drawn in an element without becoming smaller, which its letters would too.
+const beside_figure = 28, least_width = 260;
+export const room_in = holder => Math.max(least_width, (holder.clientWidth || Infinity) - beside_figure);
+
+// Axes with their labels; what is drawn goes to `marks`, cut off at the frame. room: see room_in
 export class Figure {
-  constructor({ title, width = 760, height = 440, right = 16, x, y }) {
+  constructor({ title, width = 760, height = 440, right = 16, room = Infinity, x, y }) {
     const top = 14, bottom = 50;
+    width = Math.min(width, room);
+    height = Math.min(height, Math.max(240, width));
     this.y = scale_of(y.values, { ...y, from: height - bottom, to: top });
     const left = Math.max(74, 30 + 7.7 * Math.max(0, ...this.y.ticks.map(([, name]) => name.length)));
     Object.assign(this, { width, height, left, top, bottom, right });

@@ -1,12 +1,28 @@
 // What a command says in words, and its curves: names switch them off, the pointer is told the nearest point.
 import { dashes } from '../data.js';
+import { number_among } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, draw, legend, number, shapes, tell } from './figure.js';
+import { Figure, draw, legend, room_in, shapes, tell } from './figure.js';
+
+// What the command said: sentences are broken where the page ends, tables scroll.
+function said(words) {
+  const holder = element('pre', null, { class: 'said' });
+  let last = null;
+  for (const part of words.split(/(?<=\n\n)(?!\n)/)) {
+    const table = /^ *-{3,} *$/m.test(part);
+    for (const line of part.split(/(?<=\n)/)) {
+      const kind = table || /\S {2,}\S|^ {5}/.test(line) ? 'columns' : 'sentences';
+      if (line !== '\n' && last?.className !== kind) last = holder.appendChild(element('div', null, { class: kind }));
+      last.append(line);
+    }
+  }
+  return holder;
+}
 
 export class Figures {
   constructor(holder, data) {
     this.data = data;
-    holder.append(element('pre', data.words.replace(/^\n+|\s+$/g, ''), { class: 'said' }));
+    holder.append(said(data.words.replace(/^\n+|\s+$/g, '')));
     this.parts = data.pictures.map(picture => {
       const names = element('div'), figures = element('div', null, { class: 'figures' });
       if (picture.title) holder.append(element('h2', picture.title));
@@ -25,15 +41,16 @@ export class Figures {
       }
       part.names.replaceChildren(part.entries.length > 1 ? legend(part.entries, () => this.paint(colours)) : '');
       const hidden = new Set(part.entries.filter(e => e.hidden).map(e => e.pen));
-      part.figures.replaceChildren(...part.picture.panels.map(panel => this.figure(panel, hidden, colours)));
+      part.figures.replaceChildren(...part.picture.panels.map(panel => this.figure(panel, hidden, colours, room_in(part.figures))));
     }
   }
 
-  figure(panel, hidden, colours) {
+  figure(panel, hidden, colours, room) {
+    if (!panel.curves.some(c => c.y.some(v => v != null && (!panel.log_y || v > 0)))) return element('p', `${panel.y}: ${panel.log_y ? 'zero throughout, but for rounding' : 'no values'}.`, { class: 'soft' });
     const shown = panel.curves.filter(c => !hidden.has(c.pen)), [low, high] = panel.range;
     const within = v => v >= low && v <= high;
     const figure = new Figure({
-      height: Math.max(240, 1.3 * panel.height),
+      room, height: Math.max(240, 1.3 * panel.height),
       x: { label: panel.x, log: panel.log_x, values: panel.curves.flatMap(c => c.x), room: panel.log_x ? 0.05 : 0.01 },
       y: { label: panel.y, log: panel.log_y, values: [...panel.curves.flatMap(c => c.y).filter(within), ...(low < high && panel.log_y ? [low] : [])] },
     });
@@ -55,7 +72,7 @@ export class Figures {
   // The point of a curve that is nearest to the pointer.
   ask(figure, panel, known) {
     const ring = figure.svg.appendChild(draw('circle', { r: 5, fill: 'none', stroke: 'currentColor', visibility: 'hidden' }));
-    const { svg } = figure;
+    const { svg } = figure, told_x = number_among(panel.curves.flatMap(c => c.x)), told_y = new Map(panel.curves.map(c => [c, number_among(c.y)]));
     svg.addEventListener('pointermove', event => {
       const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
       let best = null, least = 900;
@@ -68,7 +85,7 @@ export class Figures {
       const [x, y, curve, i] = best;
       ring.setAttribute('cx', x);
       ring.setAttribute('cy', y);
-      tell([curve.notes?.[i] ?? curve.name ?? panel.y, `${panel.x}: ${number(curve.x[i])}`, `${panel.y}: ${number(curve.y[i])}`], event.clientX, event.clientY);
+      tell([curve.notes?.[i] ?? curve.name ?? panel.y, `${panel.x}: ${told_x(curve.x[i])}`, `${panel.y}: ${told_y.get(curve)(curve.y[i])}`], event.clientX, event.clientY);
     });
     svg.addEventListener('pointerleave', () => { ring.setAttribute('visibility', 'hidden'); tell(null); });
   }

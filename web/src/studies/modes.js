@@ -1,8 +1,9 @@
 // Frequencies and damping over what is swept (a Campbell diagram), or of one configuration; the shape of the mode that is
 // clicked.
 import { dashes } from '../data.js';
+import { number, number_among } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, draw, legend, number, table_of } from './figure.js';
+import { Figure, draw, legend, room_in, table_of } from './figure.js';
 
 // Diagrams show Im λ, the damped frequency; tables, as modes.csv, the natural one, |λ|. Of equal blades only the first is known.
 const hertz = m => m.hertz;
@@ -106,7 +107,7 @@ export class Modes {
   figure(label, of, { log = false, include, floor = null, height = 330, right = 16 } = {}) {
     const curves = this.values(of).map(({ b, points }) => ({ b, points: floor == null ? points : cut(points, floor) }));
     const all = curves.flatMap(c => c.points.map(p => p[1])).filter(v => v != null);
-    const figure = new Figure({ height, right, x: { label: this.data.label, values: this.data.values, room: 0 }, y: { label, values: all, log, include } });
+    const figure = new Figure({ height, right, room: room_in(this.figures), x: { label: this.data.label, values: this.data.values, room: 0 }, y: { label, values: all, log, include } });
     for (const { b, points } of curves) {
       figure.line(points.map(([x, y]) => [x, log && !(y > 0) ? null : y]), { stroke: b.color, 'stroke-width': 1.8, 'stroke-dasharray': b.dash });
       for (const [x, y, m] of points) {
@@ -118,10 +119,10 @@ export class Modes {
   }
 
   campbell() {
-    const of = this.unit === 'Hz' ? hertz : radians;
-    const figure = this.figure(this.seen_from === standing ? `frequency [${this.unit}]` : `damped frequency [${this.unit}]`, of, { include: [0], height: 520, right: 210 });
+    const of = this.unit === 'Hz' ? hertz : radians, named = room_in(this.figures) > 560; // the legend names them too
+    const figure = this.figure(this.seen_from === standing ? `frequency [${this.unit}]` : `damped frequency [${this.unit}]`, of, { include: [0], height: 520, ...(named ? { right: 210 } : {}) });
     this.per_rev(figure);
-    this.label(figure, of);
+    if (named) this.label(figure, of);
     figure.element.id = 'campbell';
     return figure.element;
   }
@@ -131,7 +132,7 @@ export class Modes {
     const of = this.unit === 'Hz' ? hertz : radians;
     const curves = this.branches.filter(b => !b.hidden).map(b => ({ b, points: b.at.map(m => (m ? [m.growth, of(m), m] : [null, null])) }));
     const all = k => curves.flatMap(c => c.points.map(p => p[k])).filter(v => v != null);
-    const figure = new Figure({ height: 420, x: { label: 'growth [1/s]', values: all(0), include: [0] }, y: { label: `damped frequency [${this.unit}]`, values: all(1), include: [0] } });
+    const figure = new Figure({ height: 420, room: room_in(this.figures), x: { label: 'growth [1/s]', values: all(0), include: [0] }, y: { label: `damped frequency [${this.unit}]`, values: all(1), include: [0] } });
     for (const { b, points } of curves) {
       figure.line(points, { stroke: b.color, 'stroke-width': 1.2, 'stroke-dasharray': b.dash });
       const first = points.findIndex(p => p[2]);
@@ -198,7 +199,8 @@ export class Modes {
   }
 
   about(b, m) {
-    return [b.name, this.swept ? `${this.data.label} ${number(m.value)}` : '', natural(m) || !m.growth ? `${number(natural(m))} Hz, ${number(2 * Math.PI * natural(m))} rad/s` : '', m.hertz === 0 && m.growth ? `growth ${number(m.growth)}/s` : '', m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
+    const all = b.at.filter(Boolean).map(natural), in_hertz = number_among(all), in_radians = number_among(all.map(f => 2 * Math.PI * f));
+    return [b.name, this.swept ? `${this.data.label} ${number_among(this.data.values)(m.value)}` : '', natural(m) || !m.growth ? `${in_hertz(natural(m))} Hz, ${in_radians(2 * Math.PI * natural(m))} rad/s` : '', m.hertz === 0 && m.growth ? `growth ${number(m.growth)}/s` : '', m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
   }
 
   // Where the kinetic energy of the shape is, and how like the first shape of the branch it is.

@@ -30,6 +30,13 @@ export function show_study(page) {
     e.preventDefault();
     $('theme').click();
   });
+  // Letters stay as large as they are on a narrow page, so that figures are drawn anew.
+  const wide_enough = 1200;
+  let width = holder.clientWidth;
+  new ResizeObserver(() => {
+    if (Math.min(holder.clientWidth, wide_enough) !== Math.min(width, wide_enough)) requestAnimationFrame(() => paint());
+    width = holder.clientWidth;
+  }).observe(holder);
   paint();
   document.body.dataset.ready = 'true';
 }

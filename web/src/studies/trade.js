@@ -1,6 +1,7 @@
 // Error against cost: each model a mark, the Pareto front a line; the model that is clicked in full.
+import { number } from '../numbers.js';
 import { element } from '../words.js';
-import { Figure, legend, number, table_of } from './figure.js';
+import { Figure, legend, room_in, table_of } from './figure.js';
 
 const modes_of = p => p.modes === 0 ? "the scene's modes" : `${p.modes} ${p.modes === 1 ? 'mode' : 'modes'}${p.family ? ` (${p.family})` : ''}`;
 const name_of = p => `${p.formulation}, ${modes_of(p)}, ${p.integrator} at ${power(p.tolerance)}`;
@@ -8,7 +9,6 @@ const power = v => v < 1e-2 ? v.toExponential() : `${v}`;
 const milliseconds = p => 1e3 * p.cpu_seconds;
 const percent = p => 100 * p.relative_error;
 const done = p => p.status === 'completed';
-const floor = 1e-12; // of errors [%] on a logarithmic axis
 
 export class Trade {
   constructor(holder, data) {
@@ -25,20 +25,22 @@ export class Trade {
     beside.append(left, this.card);
     holder.append(this.answer, beside, element('h2', 'Every model'), this.table(), this.reasons());
     this.write_answer();
-    this.choose(data.points.filter(p => p.pareto).sort((a, b) => percent(a) - percent(b)).find(p => percent(p) <= 1) ?? data.points.find(p => p.pareto));
+    this.choose(data.points[data.cheapest.findLast(c => c.point != null)?.point] ?? data.points.find(p => p.pareto));
   }
 
   write_answer() {
-    for (const over of this.overs) {
-      const all = this.data.points.filter(p => p.over.join(' ') === over && done(p)), list = element('ul');
-      for (const limit of [10, 1, 0.1]) {
-        const best = all.filter(p => percent(p) <= limit).sort((a, b) => a.cpu_seconds - b.cpu_seconds)[0];
-        list.append(element('li', `Within ${limit} %: ${best ? `${name_of(best)} – ${number(milliseconds(best))} ms, error ${number(percent(best))} %` : 'none of these models'}`));
+    // What the command printed: errors of one's own, or the usual ones.
+    const { cheapest, points } = this.data;
+    for (const over of new Set(cheapest.map(c => c.over))) {
+      const list = element('ul');
+      for (const { within, point } of cheapest.filter(c => c.over === over)) {
+        const best = points[point];
+        list.append(element('li', `Within ${number(100 * within)} %: ${best ? `${name_of(best)} – ${number(milliseconds(best))} ms, error ${number(percent(best))} %` : 'none of these models'}`));
       }
       this.answer.append(element('p', over ? `The cheapest at ${over}` : 'The cheapest'), list);
     }
     const failed = this.data.points.filter(p => !done(p)).length;
-    this.answer.append(element('p', `${this.data.points.length} models${failed ? `, ${failed} of which did not come to their end` : ''}. Errors are the greatest of all outputs, each in % of its own range. An error below that of the reference, the dotted line, tells no difference.`, { class: 'soft' }));
+    this.answer.append(element('p', `${this.data.points.length} models${failed ? `, ${failed} of which did not come to their end` : ''}. Errors are the greatest of all outputs, each in % of its own range.${Object.values(this.data.references).some(r => r.relative_error > 0) ? ' An error below that of the reference, the dotted line, tells no difference.' : ''}`, { class: 'soft' }));
   }
 
   table() {
@@ -79,19 +81,18 @@ export class Trade {
   figure(over) {
     const hidden = p => this.formulations.find(f => f.name === p.formulation).hidden || this.integrators.find(i => i.name === p.integrator).hidden;
     const all = this.data.points.filter(p => p.over.join(' ') === over && done(p)), shown = all.filter(p => !hidden(p));
-    const reference = this.data.references[over], least = reference ? Math.max(100 * reference.relative_error, floor) : null;
-    const error = p => Math.max(percent(p), floor);
-    const figure = new Figure({ title: over || null, height: this.overs.length > 1 ? 360 : 460, x: { label: 'CPU time [ms]', log: true, values: all.map(milliseconds) }, y: { label: 'error [% of range]', log: true, values: [...all.map(error), ...(least ? [least] : [])] } });
+    const reference = this.data.references[over], least = reference?.relative_error > 0 ? 100 * reference.relative_error : null;
+    const figure = new Figure({ title: over || null, room: room_in(this.figures), height: this.overs.length > 1 ? 360 : 460, x: { label: 'CPU time [ms]', log: true, values: all.map(milliseconds) }, y: { label: 'error [% of range]', log: true, zeros: true, values: [...all.map(percent), ...(least ? [least] : [])] } });
     if (least) {
       const y = figure.y(least);
       figure.marks.append(Object.assign(figure.line([[10 ** figure.x.low, least], [10 ** figure.x.high, least]], { class: 'limit' })));
       figure.text(figure.width - figure.right - 6, y - 5, 'error of the reference', { 'text-anchor': 'end', class: 'soft' });
     }
     const front = all.filter(p => p.pareto).sort((a, b) => a.cpu_seconds - b.cpu_seconds);
-    figure.line(front.map(p => [milliseconds(p), error(p)]), { class: 'front' });
+    figure.line(front.map(p => [milliseconds(p), percent(p)]), { class: 'front' });
     for (const p of shown) {
       const f = this.formulations.find(o => o.name === p.formulation), i = this.integrators.find(o => o.name === p.integrator);
-      p.mark = figure.mark(milliseconds(p), error(p), i.index, { fill: p.pareto ? f.color : 'none', stroke: f.color, 'stroke-width': 1.6 }, () => [name_of(p), `error ${number(percent(p))} %, CPU time ${number(milliseconds(p))} ms`, p.pareto ? 'on the front: nothing is both cheaper and more exact' : 'click for all of it'], () => this.choose(p));
+      p.mark = figure.mark(milliseconds(p), percent(p), i.index, { fill: p.pareto ? f.color : 'none', stroke: f.color, 'stroke-width': 1.6 }, () => [name_of(p), `error ${number(percent(p))} %, CPU time ${number(milliseconds(p))} ms`, p.pareto ? 'on the front: nothing is both cheaper and more exact' : 'click for all of it'], () => this.choose(p));
     }
     return figure.element;
   }
