@@ -36,6 +36,11 @@ LoopRank ClosedEquations::rank_at(std::span<const double> y, Work& work) const {
   const std::span<const double> J = J_.in(work);
   for (std::size_t i = 0; i < rows_; ++i)
     rank.sizes.push_back(std::sqrt(row_product(&J[i * speeds_], &J[i * speeds_], speeds_)));
+  // A row that is rounding of nothing, as of a plane loop whose plane stands askew, has no size to be measured by.
+  constexpr double nothing = 1e-12;
+  const double greatest = rank.sizes.empty() ? 0.0 : *std::max_element(rank.sizes.begin(), rank.sizes.end());
+  for (double& size : rank.sizes)
+    if (!(size > nothing * greatest)) size = 0;
   rank.distinct = distinct_rows(rank.sizes, work);
   return rank;
 }
