@@ -36,7 +36,7 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
   found.changing =
       !found.passing.empty()     ? passing_text(found.passing)
       : !turn.uneven.empty()     ? uneven_text(turn.uneven)
-      : !turn.timed.empty()      ? timed_text(turn.timed)
+      : !turn.timed.empty()      ? timed_text(turn)
       : !turn.commanding.empty() ? commanding_text(turn.commanding)
       : !turn.narrow.empty()
           ? "The load '" + turn.narrow + "' acts in a narrow part of a turn: this state is steady beside it alone."

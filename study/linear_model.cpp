@@ -12,6 +12,7 @@
 #include "withy/study/linear_parts.hpp"
 #include "withy/study/narrow_loads.hpp"
 #include "withy/study/sampled_steady.hpp"
+#include "withy/study/time_laws.hpp"
 #include "withy/study/timed_loads.hpp"
 #include "withy/study/turning.hpp"
 #include "withy/study/turning_ends.hpp"
@@ -117,16 +118,16 @@ About about(const Configuration& c, const SmallMotions& motions, SampledLoads& s
   linear.changing = changing_loads(c);
   TurnCheck turn = check_turn(c.dynamics(), c.state(), c.held());
   meet_narrow_loads(c, c.state(), turn);
-  const TimedLoads timed = timed_loads(c, c.state(), turn.turning);
+  const TimedLoads timed = timed_loads(c, c.state(), turn.turning, Shaken::all);
   const bool turns = is_of_one_angle(turn);
   if (!turns) linear.shaking = without_inputs(c, timed.shaking);
   const std::vector<std::size_t> uneven = uneven_motions(c.dynamics(), c.state(), c.held());
-  StatesToCome states(c, motions, turn.turning, !timed.pushing.empty() || !uneven.empty(),
-                      uneven.empty() || motions_move(c));
+  StatesToCome states(c, motions, turn.turning, timed.any_pushes || !uneven.empty(), uneven.empty() || motions_move(c));
   if (!turns && linear.shaking.empty()) {
     SampledToCome to_come = sampled_to_come(c, motions, sampled, states);
     linear.shaking = std::move(to_come.shaking), linear.turning_loads = std::move(to_come.turning);
   }
+  linear.shaking = with_the_time(c, c.state(), turn.turning, linear.shaking);
   linear.frozen = turns || !linear.shaking.empty() || !linear.turning_loads.empty();
   linear.equilibrium = no_mode_moves(c) && is_steady(c) && uneven.empty();
   return {std::move(linear), std::move(states)};

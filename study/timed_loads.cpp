@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
+#include "withy/study/felt_states.hpp"
 #include "withy/study/load_efforts.hpp"
 
 namespace withy::study {
@@ -33,10 +35,17 @@ struct PushOfLoad {
   Eigen::VectorXd here, displaced;
 };
 
+/// By how much efforts and rates are others at an instant: than at the state, and than at the state's time with
+/// everything where it is by then. What the place alone makes of them is not of the time.
+struct PushedBy {
+  Eigen::VectorXd from_start, from_place;
+};
+
 /// What time itself changes of a load's efforts on what is free, and of the rates of its own states, of which its
 /// efforts are to come.
 struct ChangeOfLoad {
   bool pushes = false;  ///< at the state
+  bool felt = false;    ///< and something free feels it, at once or by and by
   std::vector<std::size_t>
       shaken;  ///< instants at which a displacement makes another effort, the greatest change first
 };
@@ -44,9 +53,11 @@ struct ChangeOfLoad {
 /// Pushes of loads at instants after a state.
 class Pushes {
  public:
-  Pushes(const Configuration& c, const std::vector<Instant>& instants)
+  Pushes(const Configuration& c, const std::vector<Instant>& instants, const Turning& turning, Shaken shaken)
       : c_(c),
         instants_(instants),
+        turning_(turning),
+        shaken_(shaken),
         free_(free_speeds(c.held())),
         rows_(free_),
         work_(c.prepared().equations->make_work()),
@@ -65,18 +76,24 @@ class Pushes {
     const double start_time = instants_.front().time;
     greatest_.setZero();
     const PushOfLoad start = at(start_time, instants_.front(), load);
-    Sizes pushed = Sizes::Zero();
+    std::vector<PushedBy> pushed;
     std::vector<Sizes> shaken(instants_.size(), Sizes::Zero());
     for (std::size_t k = 1; k < instants_.size(); ++k) {
       const PushOfLoad then = at(instants_[k].time, instants_[k], load);
       if (then.here == start.here && then.displaced == start.displaced) continue;
-      // What the place alone makes of it is not of the time.
       const PushOfLoad of_place = at(start_time, instants_[k], load);
-      pushed = pushed.max(apart(then.here, start.here).min(apart(then.here, of_place.here)));
+      pushed.push_back({then.here - start.here, then.here - of_place.here});
       const Eigen::VectorXd by = then.displaced - then.here;
       shaken[k] = apart(by, start.displaced - start.here).min(apart(by, of_place.displaced - of_place.here));
     }
-    ChangeOfLoad found{share(pushed) > rounding, {}};
+    const auto pushes = [&](const std::vector<Eigen::Index>& rows) {
+      Sizes most = Sizes::Zero();
+      for (const PushedBy& by : pushed)
+        most = most.max(greatest(by.from_start, rows).min(greatest(by.from_place, rows)));
+      return share(most) > rounding;
+    };
+    ChangeOfLoad found{pushes(rows_), false, {}};
+    found.felt = found.pushes && (pushes(free_) || pushes(felt_rows()));
     for (std::size_t k = found.pushes ? soon : 1; k < (found.pushes ? up_to : instants_.size()); ++k)
       if (share(shaken[k]) > rounding) found.shaken.push_back(k);
     std::sort(found.shaken.begin(), found.shaken.end(),
@@ -143,11 +160,42 @@ class Pushes {
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(rows_.size()); }
   /// Of efforts on what is free and of rates of own states, of loads together.
   Differenced slopes(double t, const State& place, const std::vector<std::size_t>& loads) {
+    const std::vector<Eigen::Index> unfelt = unfelt_rows();
     return slopes_anyhow(c_, place, [&](const State& state) {
-      Eigen::VectorXd all = Eigen::VectorXd::Zero(count());
-      for (const std::size_t load : loads) all += of(t, state, load)(rows_);
-      return all;
+      Eigen::VectorXd all = together(t, state, loads);
+      if (!unfelt.empty()) {
+        State alone = place;
+        for (const Eigen::Index r : unfelt) alone.y[element(r)] = state.y[element(r)];
+        all(unfelt) = together(t, alone, loads)(unfelt);
+      }
+      return Eigen::VectorXd(all(rows_));
     });
+  }
+  /// Of loads, on all speeds and of all states.
+  Eigen::VectorXd together(double t, const State& state, const std::vector<std::size_t>& loads) {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(every_.size()));
+    for (const std::size_t load : loads) all += of(t, state, load);
+    return all;
+  }
+  /// Of State::y, that of a row of a load's state.
+  [[nodiscard]] std::size_t element(Eigen::Index row) const {
+    return c_.layout().positions + static_cast<std::size_t>(row);
+  }
+  const std::vector<bool>& felt() {
+    if (!felt_) felt_ = felt_states(c_, instants_.front().here, turning_).continuous;
+    return *felt_;
+  }
+  /// Of states that something free feels.
+  std::vector<Eigen::Index> felt_rows() { return rows_of_states(true); }
+  /// Of those of which only what they make of each other counts.
+  std::vector<Eigen::Index> unfelt_rows() {
+    return shaken_ == Shaken::growth ? rows_of_states(false) : std::vector<Eigen::Index>();
+  }
+  std::vector<Eigen::Index> rows_of_states(bool that_are_felt) {
+    std::vector<Eigen::Index> rows;
+    for (std::size_t i = 0; i < c_.layout().continuous; ++i)
+      if (felt()[i] == that_are_felt) rows.push_back(static_cast<Eigen::Index>(c_.layout().speeds + i));
+    return rows;
   }
   /// What a displacement or its rate makes of all forces on what is free, were none to make up for another, and of the
   /// rates of loads' states.
@@ -171,6 +219,9 @@ class Pushes {
 
   const Configuration& c_;
   const std::vector<Instant>& instants_;
+  const Turning& turning_;
+  Shaken shaken_;
+  std::optional<std::vector<bool>> felt_;  ///< of the states of loads, once it is asked for
   std::vector<Eigen::Index> free_, rows_;  ///< speeds; beside these states of loads, behind all speeds
   std::vector<Eigen::Index> every_;        ///< held speeds too
   Work work_;
@@ -191,16 +242,17 @@ std::vector<double> times_after(const Configuration& c, const State& state) {
   return times;
 }
 
-TimedLoads timed_loads(const Configuration& c, const State& state, const Turning& turning) {
+TimedLoads timed_loads(const Configuration& c, const State& state, const Turning& turning, Shaken shaken_what) {
   constexpr std::size_t soon = first_soon + 1, up_to = end_of_soon + 1;  // the state itself is the first instant
   const std::vector<Instant> instants = instants_after(c, state, turning, times_after(c, state));
-  Pushes pushes(c, instants);
+  Pushes pushes(c, instants, turning, shaken_what);
   TimedLoads found;
   const std::vector<LoadNode>& loads = c.prepared().model().loads();
   std::vector<std::size_t> shaking, shaken;
   for (std::size_t load = 0; load < loads.size(); ++load) {
     const ChangeOfLoad change = pushes.change(load, soon, up_to);
-    if (change.pushes) found.pushing.push_back(loads[load].name);
+    found.any_pushes = found.any_pushes || change.pushes;
+    if (change.felt) found.pushing.push_back(loads[load].name);
     if (!pushes.small_motions_change({load}, change.shaken, change.pushes)) continue;
     found.shaking.push_back(loads[load].name);
     shaking.push_back(load);

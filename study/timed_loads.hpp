@@ -14,18 +14,26 @@ namespace withy::study {
 
 /// Names of loads that are functions of time themselves: a sine, a table, axes that turn.
 struct TimedLoads {
-  /// Their efforts on what is free change, or the rates of their own states: nothing that is balanced now stays so.
+  /// Their efforts on what is free change, or the rates of those of their own states that what is free feels: nothing
+  /// that is balanced now stays so.
   std::vector<std::string> pushing;
+  bool any_pushes = false;  ///< also where nothing free feels it
   /// They change the equations of small motions, whether they push at the state or not: growth and decay are those of
   /// one instant. A controller's reference and a force that only time changes leave these equations as they are, and so
   /// does what changes of the square of a displacement. Each load is held against itself, whatever else is stiff.
   std::vector<std::string> shaking;
 };
 
+/// Of which equations loads are named that change them.
+enum class Shaken {
+  all,    ///< of all that small motions have: what goes in, and what is seen, may be of one instant
+  growth  ///< but for what states that nothing free feels take from others, which leaves growth and decay as they are
+};
+
 /// Looks at times up to the end of the run, with all that turns carried on and everything else as it is: what is as it
 /// was from where a hinge has turned to, as axes that turn with a craft, does not change; nor does time change what
 /// the angle alone does, as weight.
-TimedLoads timed_loads(const Configuration& configuration, const State& state, const Turning& turning);
+TimedLoads timed_loads(const Configuration& configuration, const State& state, const Turning& turning, Shaken shaken);
 
 /// Times after a state [s] at which what may change with time is looked at: near ones, for what is fast, the longest
 /// first, and ones all over the rest of the run, in no ratio to each other, for what begins late or is the same after a

@@ -10,7 +10,9 @@
 
 #include "withy/core/analysis/between_instants.hpp"
 #include "withy/core/model/columns.hpp"
+#include "withy/study/felt_states.hpp"
 #include "withy/study/narrow_loads.hpp"
+#include "withy/study/time_laws.hpp"
 #include "withy/study/timed_loads.hpp"
 #include "withy/study/turning_ends.hpp"
 
@@ -165,16 +167,30 @@ std::string no_whole_turn(const Configuration& c, const State& steady, const Tur
         motion, turning.period);
   if (const std::string load = not_repeating(c, steady, turning); !load.empty())
     return fmt::format(
-        "load '{0}' acts otherwise {1:.6g} s later, and no turn is like the next: take it away (--set "
-        "loads.{0}=null), or give the period after which everything repeats (--period)",
-        load, turning.period);
+        "load '{}' acts otherwise {:.6g} s later, and no turn is like the next: {}give the period after which "
+        "everything repeats (--period)",
+        load, turning.period, take_away_text(taken_away_with(c.prepared().scene, {load}), 1, ", or "));
   return {};
 }
 
-/// Adds what becomes of what loads sample, which `check_turn` takes for held.
-void meet_sampled_loads(const Configuration& c, const State& steady, double period, TurningModes& result) {
+/// Leaves those of sampled loads of which something free feels what they hold.
+void leave_felt(const Configuration& c, const State& steady, const Turning& turning, SampledToCome& to_come) {
+  if (to_come.moving.empty() && to_come.timed.empty()) return;
+  const std::vector<bool> felt = felt_states(c, steady, turning).sampled;
+  const std::vector<LoadSlot> slots = sampled_slots(c.prepared().model());
+  const auto unfelt = [&](const std::string& name) {
+    for (std::size_t k = 0; k < slots.size(); ++k)
+      if (c.prepared().model().loads()[slots[k].load].name == name) return !felt[k];
+    return false;
+  };
+  std::erase_if(to_come.moving, unfelt), std::erase_if(to_come.timed, unfelt);
+}
+
+/// Adds what becomes of what loads sample, which `check_turn` takes for held. \param pushed loads push with time
+void meet_sampled_loads(const Configuration& c, const State& steady, double period, bool pushed, TurningModes& result) {
   if (!c.sampled()) return;
-  SampledToCome to_come = sampled_to_come(c, steady, result.check.turning, !result.timed.empty(), period);
+  SampledToCome to_come = sampled_to_come(c, steady, result.check.turning, pushed, period);
+  leave_felt(c, steady, result.check.turning, to_come);
   const auto add = [](std::vector<std::string>& names, const std::vector<std::string>& more) {
     for (const std::string& name : more)
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -184,6 +200,21 @@ void meet_sampled_loads(const Configuration& c, const State& steady, double peri
   add(result.timed, to_come.timed), add(result.shaking, to_come.shaking);
   result.commanding = std::move(to_come.moving);
   result.sampled = std::move(to_come.turning);
+}
+
+/// Loads by which time makes the state, or its small motions, those of an instant.
+void meet_timed_loads(const Configuration& c, const State& steady, double period, TurningModes& result) {
+  const Turning& turning = result.check.turning;
+  bool pushed = false;
+  if (period == 0) {
+    TimedLoads timed = timed_loads(c, steady, turning, Shaken::growth);
+    result.timed = std::move(timed.pushing), result.shaking = std::move(timed.shaking);
+    pushed = timed.any_pushes;
+  }
+  meet_sampled_loads(c, steady, period, pushed, result);
+  result.timed = with_the_time(c, steady, turning, result.timed);
+  result.shaking = with_the_time(c, steady, turning, result.shaking);
+  result.without_timed = taken_away_with(c.prepared().scene, result.timed);
 }
 
 /// Whether hinges move at rates or as motions drive them.
@@ -213,11 +244,7 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
       for (const std::size_t m : uneven_motions(c.dynamics(), steady, c.held()))
         result.uneven.push_back(c.prepared().model().motions()[m].name);
     result.narrow = meet_narrow_loads(c, steady, result.check);
-    if (wish.period == 0) {
-      TimedLoads timed = timed_loads(c, steady, result.check.turning);
-      result.timed = std::move(timed.pushing), result.shaking = std::move(timed.shaking);
-    }
-    meet_sampled_loads(c, steady, wish.period, result);
+    meet_timed_loads(c, steady, wish.period, result);
     if (!result.check.steady) result.passing = moving_freely(c, steady);
     result.turns = turns(c.prepared().model(), result.check.turning);
     if (!wish.floquet && !wish.blades) return result;

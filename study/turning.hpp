@@ -4,6 +4,7 @@
 #pragma once
 
 #include <complex>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,10 +58,13 @@ struct TurningModes {
   /// Motions that do not go on at the rate they have, of hinges that what is free feels, where no period is given: an
   /// instant likewise.
   std::vector<std::string> uneven;
-  /// Loads that are functions of time themselves and act on what is free, where no period is given: an instant
-  /// likewise.
+  /// Loads that are functions of time themselves, where what is free feels it and no period is given: an instant
+  /// likewise. What measures such a load acts with time, and is not named.
   std::vector<std::string> timed;
-  /// Those that change the equations of small motions, where no period is given: growth and decay are of one instant.
+  /// What to take away for these to go, that the rest is a scene (taken_away_with); empty: nothing.
+  std::vector<std::string> without_timed;
+  /// Those that change the equations of small motions of what is free, where no period is given: growth and decay are
+  /// of one instant.
   std::vector<std::string> shaking;
   /// Sampled loads whose commands at the state change as hinges turn, so that it is balanced at one angle alone.
   std::vector<std::string> commanding;
@@ -95,8 +99,11 @@ std::string turn_text(const TurningModes& turn);
 std::vector<std::string> moving_freely(const Configuration& configuration, const State& state);
 /// That a state does not stay with motions that do not go on at the rates they have, and what to do.
 std::string uneven_text(const std::vector<std::string>& motions);
-/// That a state does not stay with loads that change with time themselves, and what to do.
-std::string timed_text(const std::vector<std::string>& loads);
+/// That a state does not stay with loads that change with time themselves (TurningModes::timed), and what to do.
+std::string timed_text(const TurningModes& turn);
+/// "take it away with what measures it (--set loads.a=null --set loads.b=null)" and what is behind it; empty where
+/// nothing is to be taken away. \param meant of the loads, how many were to go: the others measure them
+std::string take_away_text(const std::vector<std::string>& loads, std::size_t meant, const char* behind);
 /// "the load 'base' changes the equations of small motions with time".
 std::string shaking_text(const std::vector<std::string>& loads);
 /// That a state does not stay with sampled loads whose commands change as hinges turn.

@@ -2,6 +2,9 @@
 /// What is told of small motions about a state that turns, in sentences.
 #include <fmt/format.h>
 
+#include <cctype>
+
+#include "withy/study/time_laws.hpp"
 #include "withy/study/turning.hpp"
 
 namespace withy::study {
@@ -57,13 +60,23 @@ std::string uneven_text(const std::vector<std::string>& motions) {
       many ? "they rest" : "it rests");
 }
 
-std::string timed_text(const std::vector<std::string>& loads) {
-  const bool many = loads.size() > 1;
+std::string take_away_text(const std::vector<std::string>& loads, std::size_t meant, const char* behind) {
+  if (loads.empty()) return {};
+  const char* it = meant > 1 ? "them" : "it";
+  return fmt::format("take {} away{} ({}){}", it,
+                     loads.size() > meant ? fmt::format(" with what measures {}", it) : std::string(),
+                     set_to_null(loads), behind);
+}
+
+std::string timed_text(const TurningModes& turn) {
+  const bool many = turn.timed.size() > 1;
+  std::string advice =
+      take_away_text(turn.without_timed, turn.timed.size(), ", or ") + "choose the time that is meant (--at).";
+  advice.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(advice.front())));
   return fmt::format(
       "The load{} '{}' change{} with time, whatever moves, and what is free feels it: this is balanced at this instant "
-      "and no state that stays. Take {} away (--set loads.{}=null), or choose the time that is meant (--at).",
-      many ? "s" : "", fmt::join(loads, "', '"), many ? "" : "s", many ? "them" : "it",
-      fmt::join(loads, "=null --set loads."));
+      "and no state that stays. {}",
+      many ? "s" : "", fmt::join(turn.timed, "', '"), many ? "" : "s", advice);
 }
 
 std::string shaking_text(const std::vector<std::string>& loads) {
@@ -85,7 +98,7 @@ std::string turn_text(const TurningModes& turn) {
   const Turning& turning = check.turning;
   if (!turn.passing.empty()) return passing_text(turn.passing) + no_stability;
   if (!turn.uneven.empty()) return uneven_text(turn.uneven) + no_stability;
-  if (!turn.timed.empty()) return timed_text(turn.timed) + no_stability;
+  if (!turn.timed.empty()) return timed_text(turn) + no_stability;
   if (!turn.shaking.empty())
     return fmt::format(
         "At this state {}.{}{}", shaking_text(turn.shaking), no_stability,
