@@ -163,7 +163,7 @@ class MeasuredReader {
   }
 
   void check_time(double t, std::size_t place) {
-    const double apart = 1e-9 * (1 + std::abs(t));
+    const double apart = leeway(t);
     if (!data_.times.empty() && !(t > data_.times.back()))
       problem(number_, place, fmt::format("the time does not increase: {:g} s after {:g} s", t, data_.times.back()));
     else if (t < wish_.from - apart)
@@ -280,6 +280,8 @@ std::size_t Measured::count() const {
   for (const MeasuredColumn& c : columns) all += c.count();
   return all;
 }
+
+double leeway(double time) { return 1e-9 * (1 + std::abs(time)); }
 
 Measured read_measured(const MeasuredWish& wish, const std::vector<Column>& results,
                        std::vector<std::string>& problems) {
