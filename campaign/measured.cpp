@@ -132,8 +132,10 @@ class MeasuredReader {
     data_.columns.push_back({*result, unit, index, {}, 0, false});
   }
 
+  static bool is_missing(const std::string& cell) { return cell.empty() || cell == "nan" || cell == "NaN"; }
+
   std::optional<double> number(const std::string& cell, std::size_t place) {
-    if (cell.empty() || cell == "nan" || cell == "NaN") return {};
+    if (is_missing(cell)) return {};
     const auto x = plain_number(cell);
     if (!x) problem(number_, place, fmt::format("got {}; need a number, or nothing", in_quotes(cell)));
     return x;
@@ -150,7 +152,7 @@ class MeasuredReader {
     if (!time_) return;
     const auto time = number(cells[*time_], places[*time_]);
     if (!time) {
-      if (cells[*time_].empty()) problem(number_, places[*time_], "the time is missing");
+      if (is_missing(cells[*time_])) problem(number_, places[*time_], "the time is missing");
       return;
     }
     const double t = to_seconds_ * *time;

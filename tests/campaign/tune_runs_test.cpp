@@ -11,6 +11,7 @@
 #include "withy/campaign/tune.hpp"
 #include "withy/results/csv.hpp"
 #include "withy/results/result_columns.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/study/run.hpp"
 #include "withy/tests/study/plugins.hpp"
 
@@ -169,6 +170,16 @@ TEST(TuneRuns, ASearchThatFailuresHoldUpHasNotConverged) {
   EXPECT_FALSE(held.converged());
   EXPECT_THAT(held.starts.front().reason, HasSubstr("runs that fail"));
   EXPECT_FALSE(held.parameters[0].deviation);
+}
+
+TEST(TuneRuns, ATimeThatIsNoNumberIsRefused) {
+  try {
+    fit(pendulum, "t[s],pivot[deg]\n0,58\nnan,20\n0.2,-40\n,3\n", {"bodies.rod.mass"}, {});
+    ADD_FAILURE() << "nothing was refused";
+  } catch (const study::InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("rows.csv:3:1: the time is missing"));
+    EXPECT_THAT(e.what(), HasSubstr("rows.csv:5:1: the time is missing"));
+  }
 }
 
 }  // namespace
