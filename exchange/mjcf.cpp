@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "attributes.hpp"
 #include "mjcf_geoms.hpp"
 #include "mjcf_joints.hpp"
+#include "unread.hpp"
 #include "withy/scene/names.hpp"
 
 namespace withy::exchange {
@@ -48,6 +50,7 @@ class MjcfReader {
     }
     if (!any) diagnostics_.error(mujoco_.place, "no <worldbody>");
     if (any && tree_.links.empty()) diagnostics_.error(mujoco_.place, "no <body> in <worldbody>");
+    for (std::string& remark : unread_of_mjcf(mujoco_)) tree_.remarks.push_back(std::move(remark));
     if (diagnostics_.ok()) check_tree(tree_, diagnostics_);
     return std::move(tree_);
   }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "attributes.hpp"
-#include "urdf_unread.hpp"
+#include "unread.hpp"
 #include "withy/core/spatial/direction.hpp"
 #include "withy/scene/names.hpp"
 

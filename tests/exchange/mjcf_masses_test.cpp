@@ -68,6 +68,16 @@ TEST(MjcfMasses, EndsThatSayNothingAreRefused) {
   EXPECT_THAT(geom("size='.1' fromto='0 0 0 1 1 1'"), HasSubstr("a sphere has no ends"));
 }
 
+/// In bodies, joints and defaults; as MuJoCo's schema refuses it.
+TEST(MjcfMasses, AnAttributeThatMjcfDoesNotHaveIsTold) {
+  const Scratch file(".xml", R"(<mujoco><default><joint dampin="3"/></default>
+<worldbody><body name="b"><joint dampin="2"/>
+<inertial mass="1" pos="0 0 0" diaginertia="1 1 1" inerta="2 2 2"/></body></worldbody></mujoco>)");
+  EXPECT_THAT(imported({file.file(), {}, false, 0, 0}).remarks,
+              testing::ElementsAre("the attribute dampin of <joint> is left out, 2 times, first on line 1",
+                                   "the attribute inerta of <inertial> is left out, on line 3"));
+}
+
 TEST(MjcfMasses, ABodyThatAUserMovesIsToldToStay) {
   const Scratch file(".xml",
                      "<mujoco><worldbody><body name='hand' mocap='true'><geom size='.1'/></body></worldbody></mujoco>");
