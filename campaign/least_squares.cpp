@@ -1,8 +1,11 @@
 #include "withy/campaign/least_squares.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/NonLinearOptimization>
+#include <vector>
 
 namespace withy::campaign {
 namespace {
@@ -10,6 +13,10 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+namespace Space = Eigen::LevenbergMarquardtSpace;
+
+constexpr double search_tolerance = 1e-6;
+constexpr int most_trials = 200;
 
 /// A coordinate z within bounds as a function of q without any.
 class Bounds {
@@ -56,9 +63,13 @@ class FreeProblem {
     return at;
   }
   [[nodiscard]] int values() const { return static_cast<int>(problem_.residuals); }
-  int operator()(const VectorXd& step, VectorXd& r) const {
+  int operator()(const VectorXd& step, VectorXd& r) {
     constexpr double rejected = 1e100;
-    if (!problem_.evaluate(z(step), r)) r.setConstant(problem_.residuals, rejected);
+    last_ = step;
+    if (!problem_.evaluate(z(step), r)) {
+      r.setConstant(problem_.residuals, rejected);
+      failures_.push_back(step);
+    }
     return problem_.interrupted && problem_.interrupted() ? -1 : 0;
   }
   int df(const VectorXd& step, MatrixXd& J) {
@@ -69,55 +80,74 @@ class FreeProblem {
     return problem_.interrupted && problem_.interrupted() ? -1 : 0;
   }
 
+  /// Whether trials without residuals have held up a search that went on from `before` and ended here. After one of
+  /// them steps are at the least a tenth as long, so that it lies within some lengths of the last trial.
+  [[nodiscard]] bool held_up(const VectorXd& before, const VectorXd& here) const {
+    constexpr double lengths = 20;
+    const double near = lengths * (last_ - before).norm();
+    return std::any_of(failures_.begin(), failures_.end(),
+                       [&](const VectorXd& f) { return (f - here).norm() <= near; });
+  }
+
   bool no_derivatives = false;
 
  private:
   const LeastSquaresProblem& problem_;
+  std::vector<VectorXd> failures_;  ///< trials that had no residuals
+  VectorXd last_;                   ///< trial
   std::vector<Bounds> bounds_;
   VectorXd origin_;
 };
 
+/// What the method says of its end; without the point.
+LeastSquaresResult end_of_search(Space::Status status, bool no_derivatives) {
+  switch (status) {
+    case Space::RelativeReductionTooSmall:
+    case Space::RelativeErrorAndReductionTooSmall:
+      return {{}, true, false, "a further step would lessen the sum of squares by less than a millionth"};
+    case Space::RelativeErrorTooSmall:
+      return {{}, true, false, "steps have become smaller than a millionth of the way gone"};
+    case Space::CosinusTooSmall:
+    case Space::FtolTooSmall:
+    case Space::XtolTooSmall:
+    case Space::GtolTooSmall:
+      return {{}, true, false, "rounding leaves nothing to gain"};
+    case Space::TooManyFunctionEvaluation:
+      return {{}, false, false, fmt::format("it has not converged within {} trial steps", most_trials)};
+    default:
+      return {{},
+              false,
+              false,
+              no_derivatives ? "runs beside the last point fail, so that there are no derivatives there"
+                             : "it was interrupted"};
+  }
+}
+
 }  // namespace
 
 LeastSquaresResult least_squares(const LeastSquaresProblem& problem, const VectorXd& start) {
-  namespace Space = Eigen::LevenbergMarquardtSpace;
-  constexpr double tolerance = 1e-6;
-  constexpr int most_trials = 200;
   FreeProblem free(problem, start);
   Eigen::LevenbergMarquardt<FreeProblem> method(free);
-  method.parameters.ftol = method.parameters.xtol = tolerance;
+  method.parameters.ftol = method.parameters.xtol = search_tolerance;
   method.parameters.maxfev = most_trials;
   method.parameters.factor = 0.5;
   method.useExternalScaling = true;
   method.diag.setOnes(start.size());
   VectorXd step = VectorXd::Zero(start.size());
-  const Space::Status status = method.minimize(step);
-  LeastSquaresResult result;
+  VectorXd before = step;
+  Space::Status status = method.minimizeInit(step);
+  while (status == Space::NotStarted || status == Space::Running) {
+    before = step;
+    status = method.minimizeOneStep(step);
+  }
+  LeastSquaresResult result = end_of_search(status, free.no_derivatives);
   result.z = free.z(step);
   result.interrupted = problem.interrupted && problem.interrupted();
-  result.converged = true;
-  switch (status) {
-    case Space::RelativeReductionTooSmall:
-    case Space::RelativeErrorAndReductionTooSmall:
-      result.reason = "a further step would lessen the sum of squares by less than a millionth";
-      break;
-    case Space::RelativeErrorTooSmall:
-      result.reason = "steps have become smaller than a millionth of the way gone";
-      break;
-    case Space::CosinusTooSmall:
-    case Space::FtolTooSmall:
-    case Space::XtolTooSmall:
-    case Space::GtolTooSmall:
-      result.reason = "rounding leaves nothing to gain";
-      break;
-    case Space::TooManyFunctionEvaluation:
-      result.converged = false;
-      result.reason = "it has not converged within 200 trial steps";
-      break;
-    default:
-      result.converged = false;
-      result.reason = free.no_derivatives ? "runs beside the last point fail, so that there are no derivatives there"
-                                          : "it was interrupted";
+  // Steps that failures keep short promise little, where one as long as the least squares ask for would lessen much.
+  const bool promising = method.qtf.squaredNorm() > search_tolerance * method.fnorm * method.fnorm;
+  if (result.converged && promising && free.held_up(before, step)) {
+    result.converged = false;
+    result.reason = "steps that would lessen the sum of squares further lead to runs that fail";
   }
   return result;
 }

@@ -21,7 +21,8 @@ struct LeastSquaresProblem {
 
 struct LeastSquaresResult {
   Eigen::VectorXd z;
-  bool converged = false, interrupted = false;
+  bool converged = false;  ///< not where points without residuals are in the way of steps that lessen the sum
+  bool interrupted = false;
   std::string reason;  ///< why the search ended, a clause
 };
 

@@ -11,6 +11,8 @@
 
 #include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/integrator_call.hpp"
+#include "withy/core/simulation/run_times.hpp"
+#include "withy/core/simulation/same_instant.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/core/simulation/stop.hpp"
 #include "withy/results/result_columns.hpp"
@@ -21,39 +23,62 @@
 namespace withy::campaign {
 namespace {
 
-/// Reads the results at the times of the data as they are passed.
+/// Where a run ends [s]: with the scene, as that of `withy run`, whose steps it makes; with the data where the scene
+/// has no end, or a parameter has moved it before them.
+double end_of_matched(const Scene& scene, const Measured& data, double start) {
+  const double last = data.times.back();
+  const bool covered = scene.end && last <= *scene.end + leeway(last);
+  return std::max(covered ? *scene.end : last, start);
+}
+
+/// Reads the results at the times of the data, as the rows of a run at these times show them.
 class MatchingObserver final : public SteppingObserver {
  public:
-  MatchingObserver(const study::Prepared& prepared, const Measured& data, const study::Control& control)
+  MatchingObserver(const study::Prepared& prepared, const Measured& data, const study::Control& control, double end)
       : data_(data),
         control_(control),
         results_(prepared.model(), *prepared.equations, prepared.scene.outputs),
+        jumps_(discontinuities(prepared.model())),
+        end_(end),
         sample_(prepared.scene.initial) {
     run.columns.resize(data.columns.size());
     for (std::vector<double>& column : run.columns) column.reserve(data.times.size());
+    while (inside_ > 0 && comes_by(end, data.times[inside_ - 1])) --inside_;
   }
 
   /// Results at the start. \param sign of the mass matrix's determinant there
   void begin(const State& state, int sign) {
     sign_ = sign;
-    constexpr double rounding = 1e-9;
-    while (due(state.time + rounding * (1 + std::abs(state.time)))) read(state);
+    shown_ = state.time;
+    while (due(state.time) && read(state)) continue;
   }
   bool before_step(const Stepper&) override {
     run.interrupted = control_.stop();
-    return !run.interrupted;
+    return run.ok() && next_ < data_.times.size();
   }
-  bool output(const State&) override { return true; }
+  bool output(const State& state) override {
+    shown_ = state.time;
+    return true;
+  }
   bool after_step(const Stepper& stepper, bool) override {
     if (stepper.statistics().determinant_sign != sign_)
       return fail(stepper.state().time, "the determinant of the mass matrix changed its sign");
     while (due(stepper.state().time)) {
       sample_ = stepper.state();
-      sample_.time = data_.times[next_];
-      interpolate_step(stepper, sample_.time, sample_.y);
+      interpolate_step(stepper, data_.times[next_], sample_.y);
+      sample_.time = from_jump_on(jumps_, data_.times[next_]);
       if (!read(sample_)) return false;
     }
     return true;
+  }
+  /// The run has ended, at its end or at an event: its last row is the state from then on, unless an event has come at
+  /// the time of a row.
+  void show_last(const State& state) {
+    if (!run.ok()) return;
+    const auto to_show = [&](double time) { return time > shown_ && same_instant(time, state.time); };
+    while (next_ > 0 && to_show(data_.times[next_ - 1])) take_back();
+    const bool whole = state.time >= end_;
+    while (next_ < data_.times.size() && (whole || comes_by(data_.times[next_], state.time)) && read(state)) continue;
   }
   /// What is known when stepping has ended: the data has to be covered.
   void finish(const State& state, const std::string& why) {
@@ -63,7 +88,9 @@ class MatchingObserver final : public SteppingObserver {
   MatchedRun run;
 
  private:
-  [[nodiscard]] bool due(double t) const { return next_ < data_.times.size() && data_.times[next_] <= t; }
+  /// Whether a time is at another or before it. One that is later by rounding alone is at it, as an output is.
+  static bool comes_by(double time, double other) { return time <= other || same_instant(time, other); }
+  [[nodiscard]] bool due(double t) const { return next_ < inside_ && comes_by(data_.times[next_], t); }
   bool fail(double t, const std::string& why) {
     run.failure = fmt::format("it stopped at t = {:.4g} s: {}", t, why);
     return false;
@@ -78,12 +105,20 @@ class MatchingObserver final : public SteppingObserver {
     ++next_;
     return true;
   }
+  void take_back() {
+    for (std::vector<double>& column : run.columns) column.pop_back();
+    --next_;
+  }
 
   const Measured& data_;
   const study::Control& control_;
   ResultColumns results_;
+  std::vector<double> jumps_;  ///< times [s] at which loads or motions jump, increasing
+  double end_;                 ///< [s]
   State sample_;
-  std::size_t next_ = 0;  ///< of the data's times
+  std::size_t inside_ = data_.times.size();  ///< of the data's times so many lie before the run's end
+  std::size_t next_ = 0;                     ///< of the data's times
+  double shown_ = 0;                         ///< time [s] of the last row that the run itself shows
   int sign_ = 1;
 };
 
@@ -91,18 +126,20 @@ MatchedRun run_steps(const study::Prepared& prepared, const Measured& data, cons
   const Scene& scene = prepared.scene;
   const EquationsOfMotion& equations = *prepared.equations;
   const State start = begun(*scene.model, equations, scene.initial);
-  const double end = std::max(data.times.back(), start.time);
+  const double end = end_of_matched(scene, data, start.time);
   EventActions actions(*scene.model, equations, scene.events);
   Stepping loop(*scene.model, equations, start_stepper(*scene.integrator, equations, start),
                 {.end = end, .output = scene.output, .events = actions.watched(), .actions = &actions});
-  MatchingObserver observer(prepared, data, control);
+  MatchingObserver observer(prepared, data, control, end);
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();
   observer.begin(start, equations.derivatives(start.time, start.y, rates, work).determinant_sign);
   const SteppingEnd ended = loop.run(observer);
+  using Cause = SteppingEnd::Cause;
+  if (ended.cause == Cause::reached || ended.cause == Cause::event) observer.show_last(loop.state());
   std::string why;
-  if (ended.cause == SteppingEnd::Cause::event) why = "an event of the scene ends it there";
-  if (ended.cause == SteppingEnd::Cause::failed || ended.cause == SteppingEnd::Cause::crowded)
+  if (ended.cause == Cause::event) why = "an event of the scene ends it there";
+  if (ended.cause == Cause::failed || ended.cause == Cause::crowded || ended.cause == Cause::unknown_inside)
     why = stop_of(ended, *scene.model, equations, loop.state(), loop.stepper()).reason;
   observer.finish(loop.state(), why);
   return std::move(observer.run);

@@ -19,8 +19,10 @@ struct MatchedRun {
   [[nodiscard]] bool ok() const { return failure.empty() && !interrupted; }
 };
 
-/// Runs the scene to the last time of the data, on the dense output of its integrator. A scene that cannot be made, or
-/// a run that does not come so far, is a failure; nothing is thrown. \throws PluginError
+/// Runs the scene to the last time of the data, with the steps of a run to the scene's end, and reads it as the rows of
+/// that run would show it: between steps on the dense output of the integrator, at an instant (a sample, an event,
+/// times that rounding alone tells apart from it) what was until then, at the scene's end what is from then on. A scene
+/// that cannot be made, or a run that does not come so far, is a failure; nothing is thrown. \throws PluginError
 MatchedRun matched_run(const SceneValues& scene, Registry& registry, const Measured& data,
                        const study::Control& control);
 

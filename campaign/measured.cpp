@@ -132,8 +132,10 @@ class MeasuredReader {
     data_.columns.push_back({*result, unit, index, {}, 0, false});
   }
 
+  static bool is_missing(const std::string& cell) { return cell.empty() || cell == "nan" || cell == "NaN"; }
+
   std::optional<double> number(const std::string& cell, std::size_t place) {
-    if (cell.empty() || cell == "nan" || cell == "NaN") return {};
+    if (is_missing(cell)) return {};
     const auto x = plain_number(cell);
     if (!x) problem(number_, place, fmt::format("got {}; need a number, or nothing", in_quotes(cell)));
     return x;
@@ -150,7 +152,7 @@ class MeasuredReader {
     if (!time_) return;
     const auto time = number(cells[*time_], places[*time_]);
     if (!time) {
-      if (cells[*time_].empty()) problem(number_, places[*time_], "the time is missing");
+      if (is_missing(cells[*time_])) problem(number_, places[*time_], "the time is missing");
       return;
     }
     const double t = to_seconds_ * *time;
@@ -163,7 +165,7 @@ class MeasuredReader {
   }
 
   void check_time(double t, std::size_t place) {
-    const double apart = 1e-9 * (1 + std::abs(t));
+    const double apart = leeway(t);
     if (!data_.times.empty() && !(t > data_.times.back()))
       problem(number_, place, fmt::format("the time does not increase: {:g} s after {:g} s", t, data_.times.back()));
     else if (t < wish_.from - apart)
@@ -280,6 +282,8 @@ std::size_t Measured::count() const {
   for (const MeasuredColumn& c : columns) all += c.count();
   return all;
 }
+
+double leeway(double time) { return 1e-9 * (1 + std::abs(time)); }
 
 Measured read_measured(const MeasuredWish& wish, const std::vector<Column>& results,
                        std::vector<std::string>& problems) {

@@ -34,6 +34,9 @@ struct Measured {
   [[nodiscard]] std::size_t count() const;
 };
 
+/// By how much a time [s] of the data may lie before the scene's begin or after its end: decimals and units round.
+double leeway(double time);
+
 /// How data is to be read.
 struct MeasuredWish {
   std::string file;

@@ -202,7 +202,7 @@ void TuneSearch::report(const MatchedRun& start) {
   const VectorXd r = m_.residuals(last.front());
   result_.after = root_mean_square(r);
   result_.columns = column_fits(m_.data, start, last.front());
-  add_deviations(r);
+  if (result_.converged()) add_deviations(r);  // elsewhere the residuals are none of a minimum
   count_agreeing();
 }
 

@@ -37,7 +37,7 @@ struct FittedValue {
   TunedValue tuned;
   State state = State::fitted;
   double value = 0;                 ///< in the unit of `tuned`
-  std::optional<double> deviation;  ///< standard deviation in that unit; of fitted ones
+  std::optional<double> deviation;  ///< standard deviation in that unit; of fitted ones of a search that has converged
   /// Of undetermined ones: parameters whose relative change by the factor has the effect of a relative change of this
   /// one by 1, both of the values found (of one that is 0, of its scale); none: it has no effect on the data.
   std::vector<std::pair<std::size_t, double>> same_as;

@@ -106,7 +106,8 @@ std::string search_text(const TuneResult& result) {
   text += ".\n";
   if (result.starts.size() < 2)
     return text + "One start: whether another minimum lies lower is not known; --starts 10 looks.\n";
-  text += fmt::format("{} of {} starts came to this minimum", result.agreeing, result.starts.size());
+  text += fmt::format("{} of {} starts came to this {}", result.agreeing, result.starts.size(),
+                      best.converged ? "minimum" : "point");
   for (const SearchEnd& s : result.starts) {
     if (!std::isfinite(s.residual) || s.residual < 1.01 * best.residual) continue;
     return text + fmt::format("; the next lowest has a residual {:.3g} times as large.\n", s.residual / best.residual);

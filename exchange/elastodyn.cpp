@@ -111,7 +111,15 @@ class ElastoDynReader {
             fmt::format("got {}; need a finite number, whose decimals follow a point, and the name of a parameter",
                         in_quotes(first_of(lines_[static_cast<std::size_t>(line) - 1]))));
     else if (value)
-      keyed_[words[1]] = {*value, line};
+      take(words[1], {*value, line});
+  }
+
+  /// A title may begin as a parameter does, so what it seems to say gives way.
+  void take(const std::string& key, const Keyed& given) {
+    Keyed& kept = keyed_.try_emplace(key, given).first->second;
+    if (kept.line > title_lines && kept.line != given.line && (is_read(key) || is_tuner(key)))
+      error(given.line, fmt::format("{} stands on line {} already; need it once", key, kept.line));
+    kept = given;
   }
 
   double keyed(const std::string& key, double otherwise) const {
@@ -211,8 +219,9 @@ class ElastoDynReader {
     beam_.remarks.emplace_back(
         "The file's mode shapes are left out: modes of vibration found from the table take their place, as many as "
         "wanted.");
+    remark_on_missing();
     for (const auto& [key, keyed] : keyed_) {
-      const bool tuner = key.find("StTunr") != std::string::npos;
+      const bool tuner = is_tuner(key);
       if (tuner ? keyed.value != 1 : keyed.line > title_lines && !is_read(key))
         beam_.remarks.push_back(fmt::format("{} = {} on line {} is left out{}.", key, keyed.value, keyed.line,
                                             tuner ? ": it tunes a single mode" : ""));
@@ -228,6 +237,23 @@ class ElastoDynReader {
     beam_.remarks.push_back(fmt::format("Column{} {} of the table {} left out: {}.", one ? "" : "s",
                                         fmt::join(columns, ", "), one ? "is" : "are", why));
   }
+  /// What ElastoDyn's own files always have, and this one leaves to be guessed.
+  void remark_on_missing() {
+    const bool t = beam_.tower;
+    std::vector<std::string> missing;
+    const auto look_for = [&](const std::string& key, const std::string& taken) {
+      if (!keyed_.contains(key)) missing.push_back(fmt::format("{}, taken as {}", key, taken));
+    };
+    for (const char* factor : {t ? "AdjTwMa" : "AdjBlMs", t ? "AdjFASt" : "AdjFlSt", t ? "AdjSSSt" : "AdjEdSt"})
+      look_for(factor, "1");
+    for (const char* ratio : {t ? "TwrFADmp" : "BldFlDmp", t ? "TwrSSDmp" : "BldEdDmp"}) {
+      const std::string first = fmt::format("{}(1)", ratio);
+      look_for(first, "0");
+      if (first != "BldEdDmp(1)") look_for(fmt::format("{}(2)", ratio), keyed_.contains(first) ? first : "0");
+    }
+    if (!missing.empty()) beam_.remarks.push_back(fmt::format("Not in the file: {}.", fmt::join(missing, "; ")));
+  }
+  static bool is_tuner(const std::string& key) { return key.find("StTunr") != std::string::npos; }
   /// Whether a keyword is one whose value the beam has.
   static bool is_read(const std::string& key) {
     for (const char* read : {"NBlInpSt", "NTwInpSt", "AdjBlMs", "AdjFlSt", "AdjEdSt", "AdjTwMa", "AdjFASt", "AdjSSSt"})

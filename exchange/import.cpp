@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -11,7 +13,13 @@
 #include "relaxation.hpp"
 #include "scene_text.hpp"
 #include "urdf.hpp"
+#include "withy/core/model/compiled_model.hpp"
+#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/formulation.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 #include "withy/scene/document.hpp"
+#include "withy/scene/names.hpp"
 #include "withy/scene/scene.hpp"
 
 namespace withy::exchange {
@@ -59,6 +67,19 @@ Scene check_made(const std::string& text, const Tree& tree, const FlexibleLinks&
   }
 }
 
+/// Refuses a joint that moves no mass in the scene's state, as one about an axis on which all of its mass sits: no run
+/// could begin.
+void check_motion(const Scene& scene, const Tree& tree, const std::string& file) {
+  const auto equations = compile_model(*scene.formulation, scene.model);
+  const auto rate = unsolvable_rate(*scene.model, *equations, scene.initial);
+  if (!rate) return;
+  const std::string& hinge = scene.model->hinges()[rate->hinge].name;
+  const auto joint =
+      std::find_if(tree.joints.begin(), tree.joints.end(), [&](const Joint& j) { return j.name == hinge; });
+  throw SceneError(file, {{joint != tree.joints.end() ? joint->place : Place{},
+                           fmt::format("the joint {}: {}", in_quotes(hinge), rate->why)}});
+}
+
 ImportedScene import_tree(const ModelImport& what, const std::string& text, Registry& registry) {
   if (what.length > 0 || what.tip_mass > 0)
     throw std::invalid_argument("--length and --tip-mass are for blades and towers of ElastoDyn");
@@ -85,7 +106,7 @@ ImportedScene import_tree(const ModelImport& what, const std::string& text, Regi
   if (!what.flexible.empty()) flexible = read_flexible(read_bytes(what.flexible), what.flexible, tree);
   scene.text = scene_text(tree, flexible, what.file);
   scene.remarks = tree.remarks;
-  static_cast<void>(check_made(scene.text, tree, flexible, what.file, registry));
+  check_motion(check_made(scene.text, tree, flexible, what.file, registry), tree, what.file);
   return scene;
 }
 

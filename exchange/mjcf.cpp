@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "attributes.hpp"
 #include "mjcf_geoms.hpp"
 #include "mjcf_joints.hpp"
+#include "unread.hpp"
 #include "withy/scene/names.hpp"
 
 namespace withy::exchange {
@@ -48,6 +50,7 @@ class MjcfReader {
     }
     if (!any) diagnostics_.error(mujoco_.place, "no <worldbody>");
     if (any && tree_.links.empty()) diagnostics_.error(mujoco_.place, "no <body> in <worldbody>");
+    for (std::string& remark : unread_of_mjcf(mujoco_)) tree_.remarks.push_back(std::move(remark));
     if (diagnostics_.ok()) check_tree(tree_, diagnostics_);
     return std::move(tree_);
   }
@@ -145,6 +148,8 @@ class MjcfReader {
     const std::string name = body_name(e);
     check_orientation(e, diagnostics_);
     Pose at{angles_.rotation(e, diagnostics_), Attributes(e, diagnostics_).vector("pos", Vector3::Zero())};
+    if (const std::string* mocap = e.find("mocap"); mocap != nullptr && *mocap == "true")
+      tree_.remarks.push_back(fmt::format("body {}: mocap is left out, it stays where it is", in_quotes(name)));
     if (const double share = Attributes(e, diagnostics_).number("gravcomp", 0); share != 0 && !tree_.gravity.isZero(0))
       tree_.remarks.push_back(fmt::format("body {}: gravcomp {} is left out, its weight acts", in_quotes(name), share));
     std::vector<Element> joints;
@@ -184,6 +189,9 @@ class MjcfReader {
   /// Of <inertial>, else of geoms; or the other way around where <compiler> asks for it.
   MassProperties masses(const Element& e, const std::string& name, const std::string& around) {
     const Element* inertial = e.child("inertial");
+    for (const Element& other : e.children)
+      if (other.name == "inertial" && &other != inertial)
+        diagnostics_.error(other.place, "a second <inertial> of one body; need one");
     MassProperties m;
     if (from_geoms_ == "true" || (from_geoms_ == "auto" && inertial == nullptr)) {
       for (const Element& geom : e.children)
@@ -197,13 +205,20 @@ class MjcfReader {
   MassProperties of_inertial(const Element& inertial, const std::string& name) {
     check_orientation(inertial, diagnostics_);
     const Attributes a(inertial, diagnostics_);
+    for (const char* key : {"mass", "pos"}) static_cast<void>(a.required(key));
     MassProperties m;
     m.mass = a.number("mass", 0);
     m.center = a.vector("pos", Vector3::Zero());
     if (const auto full = a.numbers("fullinertia", 6, 6)) {
+      if (inertial.find("diaginertia") != nullptr || turns_itself(inertial))
+        a.error("fullinertia",
+                "has axes of its own, those of the body; need it without diaginertia and without an orientation");
       m.inertia = inertia_matrix((*full)[0], (*full)[1], (*full)[2], (*full)[3], (*full)[4], (*full)[5]);
     } else {
       m.inertia = a.vector("diaginertia", Vector3::Zero()).asDiagonal();
+      if (inertial.find("diaginertia") == nullptr && m.mass > 0)
+        tree_.remarks.push_back(
+            fmt::format("body {}: its <inertial> has no inertia; its mass sits at a point", in_quotes(name)));
     }
     m.inertia = turned(angles_.rotation(inertial, diagnostics_), m.inertia);
     InertiaRule{mend_inertias_, diagnostics_, tree_.remarks}.settle(name, inertial.place, m.mass, m.inertia);

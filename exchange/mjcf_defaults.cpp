@@ -29,6 +29,11 @@ bool says(const Element& element, const std::string& key) {
 
 }  // namespace
 
+bool turns_itself(const Element& element) {
+  return std::any_of(element.attributes.begin(), element.attributes.end(),
+                     [](const auto& attribute) { return attribute.first == "quat" || is_turn(attribute.first); });
+}
+
 void check_orientation(const Element& element, Diagnostics& diagnostics) {
   std::vector<std::string> given;
   for (const auto& [key, value] : element.attributes)

@@ -30,6 +30,8 @@ class MjcfDefaults {
   std::set<std::string> global_;  ///< other names of the class `main`
 };
 
+/// Whether an element says itself, in any form, how it is turned.
+bool turns_itself(const Element& element);
 /// Reports an element that gives its orientation in several forms, before defaults complete it.
 void check_orientation(const Element& element, Diagnostics& diagnostics);
 

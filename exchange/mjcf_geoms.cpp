@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "withy/scene/names.hpp"
 
@@ -90,6 +91,30 @@ bool is_shell(const Attributes& a, const Element& geom) {
   return true;
 }
 
+/// Reports a mass or density below zero; where both are given `mass` counts.
+void check_mass(const Attributes& a, const Element& geom) {
+  const char* key = geom.find("mass") != nullptr ? "mass" : "density";
+  if (const double value = a.number(key, 0); value < 0) a.error(key, fmt::format("got {}; need at least 0", value));
+}
+
+/// The points that `fromto` gives; none, after a report, where they say nothing, as MuJoCo refuses it too.
+std::optional<std::pair<Vector3, Vector3>> ends_of(const Attributes& a, const std::string& type, bool has_length) {
+  constexpr double shortest_half = 1e-14;  // MuJoCo's mjEPS [m]
+  const auto ends = a.numbers("fromto", 6, 6);
+  if (!ends) return {};
+  const Vector3 from((*ends)[0], (*ends)[1], (*ends)[2]), to((*ends)[3], (*ends)[4], (*ends)[5]);
+  if (!has_length) {
+    a.error("fromto", fmt::format("a {} has no ends; need a capsule, cylinder, box or ellipsoid", type));
+  } else if ((to - from).norm() < 2 * shortest_half) {
+    a.error("fromto", fmt::format("got two ends at {} {} {}; need a length", from[0], from[1], from[2]));
+  } else if (!a.vector("pos", Vector3::Zero()).isZero(0)) {
+    a.error("pos", "the geom has a fromto, which says where it is; need one of them");
+  } else {
+    return std::pair(from, to);
+  }
+  return {};
+}
+
 /// Looks: by `mass`, else by `density`.
 bool is_massless(const Attributes& a, const Element& geom) {
   return a.number(geom.find("mass") != nullptr ? "mass" : "density", 1) == 0;
@@ -125,6 +150,7 @@ std::optional<MassProperties> mass_of_geom(const Element& geom, const MjcfAngles
             fmt::format("the {} is fitted to a mesh, which is not in this file; give the body an <inertial>", type));
     return {};
   }
+  check_mass(a, geom);
   const auto size = a.numbers("size", count, 3);
   if (!size ||
       std::any_of(size->begin(), size->begin() + static_cast<std::ptrdiff_t>(count), [](double x) { return x <= 0; })) {
@@ -137,8 +163,10 @@ std::optional<MassProperties> mass_of_geom(const Element& geom, const MjcfAngles
   const double r = (*size)[0];
   const double across = count == 3 ? (*size)[1] : r;
   double half = count == 3 ? (*size)[2] : count == 2 ? (*size)[1] : 0;
-  if (const auto ends = a.numbers("fromto", 6, 6); ends && has_length) {
-    const Vector3 from((*ends)[0], (*ends)[1], (*ends)[2]), to((*ends)[3], (*ends)[4], (*ends)[5]);
+  if (geom.find("fromto") != nullptr) {
+    const auto ends = ends_of(a, type, has_length);
+    if (!ends) return {};
+    const auto& [from, to] = *ends;
     m.center = (from + to) / 2;
     half = (to - from).norm() / 2;
     R = rotation_between(Vector3::UnitZ(), to - from);

@@ -18,6 +18,9 @@ std::string scene_name(const std::string& name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') c = '_';
   if (made.empty() || (std::isalpha(static_cast<unsigned char>(made.front())) == 0 && made.front() != '_'))
     made = '_' + made.substr(0, 63);
+  // YAML reads these as no name at all.
+  for (const char* nothing : {"null", "Null", "NULL"})
+    if (made == nothing) return '_' + made;
   return name == "world" ? "_world" : made;
 }
 
@@ -37,30 +40,35 @@ void name_parts(std::vector<Part>& parts, const char* what, Tree& tree, Diagnost
   }
 }
 
-/// Joints that move on the rigid part that a link is of, without the one that holds it; `mass` grows by that part's.
-std::vector<const Joint*> moving_on(const Tree& tree, int link, double& mass) {
-  mass += tree.links[static_cast<std::size_t>(link)].mass;
+/// Whether a link resists any motion: a wheel may have an inertia alone.
+bool resists(const Link& link) { return link.mass > 0 || !link.inertia.isZero(0); }
+
+/// Joints that move on the rigid part that a link is of, without the one that holds it; `solid` becomes true where that
+/// part has mass or inertia.
+std::vector<const Joint*> moving_on(const Tree& tree, int link, bool& solid) {
+  solid = solid || resists(tree.links[static_cast<std::size_t>(link)]);
   std::vector<const Joint*> all;
   for (const Joint& joint : tree.joints) {
     if (joint.parent != link) continue;
-    const auto more = joint.type == "weld" ? moving_on(tree, joint.child, mass) : std::vector<const Joint*>{&joint};
+    const auto more = joint.type == "weld" ? moving_on(tree, joint.child, solid) : std::vector<const Joint*>{&joint};
     all.insert(all.end(), more.begin(), more.end());
   }
   return all;
 }
 
-/// A free part without mass and with a single joint on it: the part can go back as far as the joint goes forth, and
-/// nothing that has mass moves.
+/// A free part without mass and inertia and with a single joint on it: the part can go back as far as the joint goes
+/// forth, and nothing that has mass moves.
 void check_free(const Tree& tree, Diagnostics& diagnostics) {
   for (const Joint& joint : tree.joints) {
     if (joint.type != "free") continue;
-    double mass = 0;
-    const auto on_it = moving_on(tree, joint.child, mass);
-    if (mass == 0 && on_it.size() == 1)
-      diagnostics.error(tree.links[static_cast<std::size_t>(joint.child)].place,
-                        fmt::format("the link floats by the joint {}, carries no mass, and only the joint {} moves on "
-                                    "it: its acceleration would be undefined; give it an inertia, or fix a joint",
-                                    in_quotes(joint.name), in_quotes(on_it.front()->name)));
+    bool solid = false;
+    const auto on_it = moving_on(tree, joint.child, solid);
+    if (!solid && on_it.size() == 1)
+      diagnostics.error(
+          tree.links[static_cast<std::size_t>(joint.child)].place,
+          fmt::format("the link floats by the joint {}, has no mass and no inertia, and only the joint {} moves on "
+                      "it: its acceleration would be undefined; give it an inertia, or fix a joint",
+                      in_quotes(joint.name), in_quotes(on_it.front()->name)));
   }
 }
 
@@ -69,22 +77,22 @@ void check_free(const Tree& tree, Diagnostics& diagnostics) {
 void check_tree(Tree& tree, Diagnostics& diagnostics) {
   name_parts(tree.links, "link", tree, diagnostics);
   name_parts(tree.joints, "joint", tree, diagnostics);
-  // Mass beyond each joint: a leaf that moves without any would make the mass matrix singular.
-  std::vector<double> beyond(tree.links.size());
-  for (std::size_t i = 0; i < tree.links.size(); ++i) beyond[i] = tree.links[i].mass;
+  // Of each joint, whether anything beyond it has mass or inertia: else the mass matrix is singular.
+  std::vector<bool> beyond(tree.links.size());
+  for (std::size_t i = 0; i < tree.links.size(); ++i) beyond[i] = resists(tree.links[i]);
   // Joints may stand in any order: as many passes as the tree is deep.
   std::vector<int> parent(tree.links.size(), -1);
   for (const Joint& joint : tree.joints) parent[static_cast<std::size_t>(joint.child)] = joint.parent;
   for (std::size_t i = 0; i < tree.links.size(); ++i)
     for (int above = parent[i]; above >= 0; above = parent[static_cast<std::size_t>(above)])
-      beyond[static_cast<std::size_t>(above)] += tree.links[i].mass;
+      if (resists(tree.links[i])) beyond[static_cast<std::size_t>(above)] = true;
   for (const Joint& joint : tree.joints) {
     const Link& child = tree.links[static_cast<std::size_t>(joint.child)];
-    if (joint.type != "weld" && beyond[static_cast<std::size_t>(joint.child)] == 0)
+    if (joint.type != "weld" && !beyond[static_cast<std::size_t>(joint.child)])
       diagnostics.error(
           child.place,
-          fmt::format("the link moves by the joint {} and carries no mass: its acceleration would be undefined; "
-                      "give it an inertia, or fix the joint",
+          fmt::format("the link moves by the joint {}, and neither it nor what hangs on it has mass or inertia: its "
+                      "acceleration would be undefined; give it an inertia, or fix the joint",
                       in_quotes(joint.name)));
   }
   if (diagnostics.ok()) check_free(tree, diagnostics);

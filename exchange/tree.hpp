@@ -59,7 +59,7 @@ struct Tree {
 };
 
 /// Checks names against the rules of scenes, replacing what they may not have (with a remark), and that every part
-/// that moves carries mass.
+/// that moves has mass or inertia, or carries some.
 void check_tree(Tree& tree, Diagnostics& diagnostics);
 
 }  // namespace withy::exchange

@@ -7,29 +7,70 @@
 #include <utility>
 
 #include "attributes.hpp"
+#include "unread.hpp"
+#include "withy/core/spatial/direction.hpp"
 #include "withy/scene/names.hpp"
 
 namespace withy::exchange {
 namespace {
 
-/// <origin xyz rpy>; identity where there is none.
-Pose origin_of(const Element& parent, Diagnostics& diagnostics) {
-  const Element* origin = parent.child("origin");
-  if (origin == nullptr) return {};
-  const Attributes a(*origin, diagnostics);
-  const Vector3 rpy = a.vector("rpy", Vector3::Zero());
-  const Matrix3 R = (Eigen::AngleAxisd(rpy[2], Vector3::UnitZ()) * Eigen::AngleAxisd(rpy[1], Vector3::UnitY()) *
-                     Eigen::AngleAxisd(rpy[0], Vector3::UnitX()))
-                        .toRotationMatrix();
-  return {R, a.vector("xyz", Vector3::Zero())};
+/// What the reading of parts of a robot has in common.
+struct UrdfReading {
+  InertiaRule rule;
+  int minor = 0;  ///< of the version 1.x that the file says it has
+
+  [[nodiscard]] Diagnostics& diagnostics() const { return rule.diagnostics; }
+  void remark(std::string text) const { rule.remarks.push_back(std::move(text)); }
+};
+
+/// The x of version 1.x. Versions 1.0 to 1.2 are known; other ones may give what is read here another meaning.
+int minor_version(const Element& robot, Diagnostics& diagnostics) {
+  const std::string* text = robot.find("version");
+  if (text == nullptr) return 0;
+  for (int minor = 0; minor <= 2; ++minor)
+    if (*text == fmt::format("1.{}", minor)) return minor;
+  Attributes(robot, diagnostics).error("version", fmt::format("got {}; need 1.0, 1.1 or 1.2", in_quotes(*text)));
+  return 0;
 }
 
-Link urdf_link(const Element& element, const InertiaRule& rule) {
-  Diagnostics& diagnostics = rule.diagnostics;
+Matrix3 by_angles(const Vector3& rpy) {
+  return (Eigen::AngleAxisd(rpy[2], Vector3::UnitZ()) * Eigen::AngleAxisd(rpy[1], Vector3::UnitY()) *
+          Eigen::AngleAxisd(rpy[0], Vector3::UnitX()))
+      .toRotationMatrix();
+}
+
+/// By `quat_xyzw`, which version 1.1 has in the place of `rpy`, and earlier ones take no notice of.
+Matrix3 rotation_of(const Element& origin, const UrdfReading& reading) {
+  const Attributes a(origin, reading.diagnostics());
+  const bool has_quaternion = origin.find("quat_xyzw") != nullptr;
+  if (has_quaternion && reading.minor < 1)
+    reading.remark(
+        fmt::format("quat_xyzw on line {} is left out: URDF has it from version 1.1 on, and the file's "
+                    "version is 1.0",
+                    origin.place.line));
+  if (!has_quaternion || reading.minor < 1) return by_angles(a.vector("rpy", Vector3::Zero()));
+  if (origin.find("rpy") != nullptr) a.error("quat_xyzw", "the element has rpy too; need one of them");
+  const auto q = a.numbers("quat_xyzw", 4, 4);
+  if (!q) return Matrix3::Identity();
+  const auto unit = unit_along(Eigen::Vector4d((*q)[3], (*q)[0], (*q)[1], (*q)[2]));
+  if (unit) return rotation_from_quaternion((*unit)[0], (*unit)[1], (*unit)[2], (*unit)[3]);
+  a.error("quat_xyzw", "got 0 0 0 0; need a quaternion");
+  return Matrix3::Identity();
+}
+
+/// <origin> of an element; identity where there is none.
+Pose origin_of(const Element& parent, const UrdfReading& reading) {
+  const Element* origin = parent.child("origin");
+  if (origin == nullptr) return {};
+  return {rotation_of(*origin, reading), Attributes(*origin, reading.diagnostics()).vector("xyz", Vector3::Zero())};
+}
+
+Link urdf_link(const Element& element, const UrdfReading& reading) {
+  Diagnostics& diagnostics = reading.diagnostics();
   Link link{Attributes(element, diagnostics).required("name"), element.place, 0, Vector3::Zero(), Matrix3::Zero()};
   const Element* inertial = element.child("inertial");
   if (inertial == nullptr) return link;
-  const Pose at = origin_of(*inertial, diagnostics);
+  const Pose at = origin_of(*inertial, reading);
   link.center = at.p;
   const Element *mass = inertial->child("mass"), *inertia = inertial->child("inertia");
   if (mass == nullptr || inertia == nullptr || mass->find("value") == nullptr) {
@@ -41,7 +82,7 @@ Link urdf_link(const Element& element, const InertiaRule& rule) {
   for (const char* key : {"ixx", "iyy", "izz"}) static_cast<void>(a.required(key));
   const auto n = [&](const char* key) { return a.number(key, 0); };
   link.inertia = turned(at.R, inertia_matrix(n("ixx"), n("iyy"), n("izz"), n("ixy"), n("ixz"), n("iyz")));
-  rule.settle(link.name, inertial->place, link.mass, link.inertia);
+  reading.rule.settle(link.name, inertial->place, link.mass, link.inertia);
   return link;
 }
 
@@ -49,23 +90,43 @@ const std::map<std::string, std::string, std::less<>> joint_types = {
     {"revolute", "revolute"}, {"continuous", "revolute"}, {"prismatic", "prismatic"},
     {"fixed", "weld"},        {"floating", "free"},       {"planar", "planar"}};
 
+void add_to(std::string& remark, const std::string& more) { remark += (remark.empty() ? "" : "; ") + more; }
+
+/// The bounds of a joint's motion and drive, in words.
+std::string limits_in_words(const Element& limit, const std::string& type, Diagnostics& diagnostics) {
+  std::string words;
+  const Attributes a(limit, diagnostics);
+  if (type != "continuous" && (limit.find("lower") != nullptr || limit.find("upper") != nullptr))
+    words =
+        fmt::format("its range {} to {} is not enforced: see hinge-limit", a.number("lower", 0), a.number("upper", 0));
+  struct Bound {
+    const char *key, *angular, *straight;
+  };
+  for (const Bound& bound : {Bound{"effort", " N m", " N"},
+                             {"velocity", " rad/s", " m/s"},
+                             {"acceleration", " rad/s^2", " m/s^2"},
+                             {"deceleration", " rad/s^2", " m/s^2"},
+                             {"jerk", " rad/s^3", " m/s^3"}}) {
+    const std::string* text = limit.find(bound.key);
+    if (text == nullptr || *text == "inf") continue;
+    const double most = a.number(bound.key, 0);
+    if (most == 0) continue;
+    const bool several = type == "planar" || type == "floating";
+    const char* unit = several ? "" : type == "prismatic" ? bound.straight : bound.angular;
+    add_to(words, fmt::format("{} of {}{} at most is not enforced", bound.key, most, unit));
+  }
+  return words;
+}
+
 /// Axis, damper, and in words what a scene does not take over.
 void describe_joint(const Element& element, Joint& joint, Tree& tree, Diagnostics& diagnostics) {
   const Element *axis = element.child("axis"), *dynamics = element.child("dynamics"), *limit = element.child("limit");
   if (axis != nullptr && joint.type != "weld" && joint.type != "free")
     joint.axis = Attributes(*axis, diagnostics).direction("xyz", Vector3::UnitX());
-  if (limit != nullptr && *element.find("type") != "continuous") {
-    const Attributes a(*limit, diagnostics);
-    if (limit->find("lower") != nullptr || limit->find("upper") != nullptr)
-      joint.remark = fmt::format("its range {} to {} is not enforced: see hinge-limit", a.number("lower", 0),
-                                 a.number("upper", 0));
-    const bool angular = joint.type != "prismatic";
-    for (const auto& [key, unit] :
-         {std::pair("effort", angular ? "N m" : "N"), std::pair("velocity", angular ? "rad/s" : "m/s")})
-      if (const double most = a.number(key, 0); most != 0)
-        joint.remark +=
-            fmt::format("{}{} of {} {} at most is not enforced", joint.remark.empty() ? "" : "; ", key, most, unit);
-  }
+  if (limit != nullptr && joint.type != "weld")
+    joint.remark = limits_in_words(*limit, *element.find("type"), diagnostics);
+  if (element.child("safety_controller") != nullptr && joint.type != "weld")
+    add_to(joint.remark, "its safety_controller is left out");
   if (dynamics != nullptr) {
     const Attributes a(*dynamics, diagnostics);
     const double damping = joint.type == "weld" ? 0 : a.number("damping", 0);
@@ -126,7 +187,8 @@ std::vector<const Element*> holders(const Element& robot, const std::map<std::st
 }
 
 Joint urdf_joint(const Element& element, int child, const std::map<std::string, int>& links, Tree& tree,
-                 Diagnostics& diagnostics) {
+                 const UrdfReading& reading) {
+  Diagnostics& diagnostics = reading.diagnostics();
   const Attributes a(element, diagnostics);
   Joint joint;
   joint.name = a.required("name");
@@ -141,7 +203,7 @@ Joint urdf_joint(const Element& element, int child, const std::map<std::string, 
     a.error("type", fmt::format("got {}; need one of: revolute, continuous, prismatic, fixed, floating, planar",
                                 in_quotes(type)));
   }
-  joint.offset = origin_of(element, diagnostics);
+  joint.offset = origin_of(element, reading);
   if (known != joint_types.end()) describe_joint(element, joint, tree, diagnostics);
   return joint;
 }
@@ -198,12 +260,13 @@ Tree read_urdf(const Element& robot, bool free_base, bool mend_inertias, Diagnos
   Tree tree;
   if (const std::string* name = robot.find("name")) tree.name = *name;
   tree.gravity_remark = "URDF has none: that of the Earth along -z";
+  const UrdfReading reading{{mend_inertias, diagnostics, tree.remarks}, minor_version(robot, diagnostics)};
   std::map<std::string, int> links;
   for (const Element& e : robot.children) {
     if (e.name.starts_with("xacro:")) {
       diagnostics.error(e.place, "a macro; expand the file with xacro first");
     } else if (e.name == "link") {
-      tree.links.push_back(urdf_link(e, {mend_inertias, diagnostics, tree.remarks}));
+      tree.links.push_back(urdf_link(e, reading));
       if (!links.emplace(tree.links.back().name, static_cast<int>(tree.links.size()) - 1).second)
         diagnostics.error(e.place, "a second link of the name " + in_quotes(tree.links.back().name));
     }
@@ -215,7 +278,7 @@ Tree read_urdf(const Element& robot, bool free_base, bool mend_inertias, Diagnos
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     const int child = static_cast<int>(i);
     if (holding[i] != nullptr) {
-      tree.joints.push_back(urdf_joint(*holding[i], child, links, tree, diagnostics));
+      tree.joints.push_back(urdf_joint(*holding[i], child, links, tree, reading));
     } else {
       Joint base;
       base.name = "base_of_" + tree.links[i].name;
@@ -227,6 +290,7 @@ Tree read_urdf(const Element& robot, bool free_base, bool mend_inertias, Diagnos
   }
   if (!diagnostics.ok()) return tree;
   check_circles(tree, diagnostics);
+  for (std::string& remark : unread_of_urdf(robot)) tree.remarks.push_back(std::move(remark));
   if (diagnostics.ok() && is_world(tree, root, free_base)) take_world_out(tree, root);
   check_tree(tree, diagnostics);
   return tree;

@@ -13,7 +13,8 @@ class Model;
 
 namespace withy::exchange {
 
-/// Reads <robot>. Frames: a link has the frame of its joint; `rpy` turns about fixed x, then y, then z.
+/// Reads <robot> of versions 1.0 to 1.2. Frames: a link has the frame of its joint; `rpy` turns about fixed x, then y,
+/// then z.
 /// \param free_base whether the root link floats; otherwise it is fixed to the world. A root link called "world"
 /// without inertia is the world itself, unless it is to float with what is fixed to it. \param mend_inertias as
 /// InertiaRule

@@ -15,6 +15,11 @@ Interface interface_of(const Mesh& mesh, const std::string& text) {
   interface.nodes = nodes_of(mesh, equals == std::string::npos ? text : text.substr(equals + 1));
   if (interface.name.find_first_of(",. \t=") != std::string::npos || interface.name.empty())
     throw InputError(fmt::format("got '{}'; nodes without a set need a name, as tip=17,18,19", text));
+  if (interface.name == "root")
+    throw InputError(fmt::format(
+        "got '{}'; `root` is the place where a body is held, so no node may have the name: give it another, "
+        "as tip={}",
+        text, text.substr(equals + 1)));
   return interface;
 }
 

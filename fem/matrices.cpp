@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <initializer_list>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "text_lines.hpp"
 
@@ -50,24 +54,77 @@ double value_of(std::string_view text, const std::filesystem::path& file, int li
   return *value;
 }
 
-/// Lines "row column value", rows from 1.
-std::vector<Triplet> read_triplets(const std::filesystem::path& file, Eigen::Index most) {
-  const std::string text = text_of(file);
+constexpr std::string_view market = "%%MatrixMarket";
+
+/// Refuses a file of Matrix Market that has no real matrix by rows and columns. What it says of symmetry is seen from
+/// the elements.
+void check_heading(std::string_view line, const std::filesystem::path& file, int number) {
+  std::string heading(line);
+  std::transform(heading.begin(), heading.end(), heading.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto fields = words(heading);
+  const auto is = [&](std::size_t i, std::initializer_list<std::string_view> known) {
+    return i < fields.size() && std::find(known.begin(), known.end(), fields[i]) != known.end();
+  };
+  if (!is(1, {"matrix"}) || !is(2, {"coordinate"}) || !is(3, {"real", "double", "integer"}) ||
+      !is(4, {"general", "symmetric"}))
+    fault(file, number, fmt::format("got '{}'; need matrix coordinate real (or integer) general (or symmetric)", line));
+}
+
+/// The number of elements, of "rows columns elements": the first line below the heading that is no remark.
+std::size_t announced_elements(std::string_view line, Eigen::Index size, const std::filesystem::path& file,
+                               int number) {
+  const auto fields = words(line);
+  const auto rows = fields.size() == 3 ? number_of<long>(fields[0]) : std::nullopt,
+             columns = fields.size() == 3 ? number_of<long>(fields[1]) : std::nullopt;
+  const auto entries = fields.size() == 3 ? number_of<std::size_t>(fields[2]) : std::nullopt;
+  if (!rows || !columns || !entries) fault(file, number, "need the numbers of rows, columns and elements");
+  if (*rows != size || *columns != size)
+    fault(file, number, fmt::format("got a matrix of {} by {}; need {} by {}", *rows, *columns, size, size));
+  return *entries;
+}
+
+/// Lines "row column value", rows from 1, of a matrix of `size` rows; below the heading of Matrix Market where there is
+/// one.
+std::vector<Triplet> read_triplets(std::string_view text, Eigen::Index size, const std::filesystem::path& file) {
   std::vector<Triplet> triplets;
+  std::optional<std::size_t> announced;
+  bool sizes_follow = false;
   Lines lines(text);
   std::string_view line;
   while (lines.next(line)) {
     line = trimmed(line);
+    if (lines.number() == 1 && line.starts_with(market)) {
+      check_heading(line, file, lines.number());
+      sizes_follow = true;
+    }
     if (line.empty() || line.front() == '%' || line.front() == '*') continue;
+    if (std::exchange(sizes_follow, false)) {
+      announced = announced_elements(line, size, file, lines.number());
+      continue;
+    }
     const auto fields = words(line);
-    const auto row = number_of<long>(fields[0]);
-    const auto column = fields.size() == 3 ? number_of<long>(fields[1]) : std::nullopt;
+    const auto row = fields.size() == 3 ? number_of<long>(fields[0]) : std::nullopt,
+               column = fields.size() == 3 ? number_of<long>(fields[1]) : std::nullopt;
     if (!row || !column || *row < 1 || *column < 1) fault(file, lines.number(), "need a row, a column and a value");
-    if (*row > most || *column > most)
-      fault(file, lines.number(), fmt::format("got row {}, column {}; there are {} rows", *row, *column, most));
+    if (*row > size || *column > size)
+      fault(file, lines.number(), fmt::format("got row {}, column {}; there are {} rows", *row, *column, size));
     triplets.emplace_back(*row - 1, *column - 1, value_of(fields[2], file, lines.number()));
   }
+  if (announced && *announced != triplets.size())
+    throw InputError(
+        fmt::format("{}: got {} elements; its line of sizes says {}", file.string(), triplets.size(), *announced));
   return triplets;
+}
+
+/// Whether the first line that is no remark has its fields between commas.
+bool has_commas(std::string_view text) {
+  Lines lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    line = trimmed(line);
+    if (!line.empty() && line.front() != '*' && line.front() != '%') return line.find(',') != std::string_view::npos;
+  }
+  return false;
 }
 
 /// Lines "node, freedom, node, freedom, value".
@@ -133,19 +190,19 @@ NamedMatrix read_calculix(const std::filesystem::path& values, const std::filesy
     matrix.rows.push_back({*node, *axis - 1});
   }
   const auto size = static_cast<Eigen::Index>(matrix.rows.size());
-  matrix.values = symmetric(read_triplets(values, size), size, values);
+  matrix.values = symmetric(read_triplets(text_of(values), size, values), size, values);
   return matrix;
 }
 
 NamedMatrix read_abaqus(const std::filesystem::path& file, const Mesh& mesh) {
   const std::string text = text_of(file);
-  if (text.find(',') != std::string::npos) return read_matrix_input(text, file);
+  if (has_commas(text)) return read_matrix_input(text, file);
   NamedMatrix matrix;
   for (const auto& [node, X] : mesh.nodes) {
     for (int axis = 0; axis < 3; ++axis) matrix.rows.push_back({node, axis});
   }
   const auto size = static_cast<Eigen::Index>(matrix.rows.size());
-  const std::vector<Triplet> triplets = read_triplets(file, size);
+  const std::vector<Triplet> triplets = read_triplets(text, size, file);
   matrix.values = symmetric(triplets, size, file);
   const bool last =
       std::any_of(triplets.begin(), triplets.end(), [&](const Triplet& t) { return t.row() == size - 1; });

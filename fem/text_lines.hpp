@@ -15,7 +15,7 @@
 
 namespace withy::fem {
 
-/// The bytes of a file. \throws InputError
+/// The bytes of a file, without the mark of UTF-8 that some editors put before them. \throws InputError
 inline std::string text_of(const std::filesystem::path& file) {
   constexpr std::uintmax_t most_bytes = std::uintmax_t{4} << 30;
   std::error_code none;
@@ -24,6 +24,7 @@ inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) throw InputError(file.string() + ": cannot be read");
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   return text;
 }
 

@@ -56,6 +56,11 @@ class SidBody final : public Body {
             fmt::format("there is no node '{}' for a root; nodes are {}", options.root, stations()));
       root_ = *root;
     }
+    // Who names no root may take the node for it, and hang there what then hangs at the frame of the file.
+    if (options.root.empty() && hides_a_node())
+      throw std::domain_error(
+          "the file's node 'root' is not where the body is held, which is the place that 'root' names; hold it there "
+          "by root: root, or give the node another name in the file");
     for (const auto& [id, at] : nodes_) shape_.length = std::max(shape_.length, (at.X - root_.X).norm());
     const bool weighted =
         std::any_of(data.nodes.begin(), data.nodes.end(), [](const sid::Node& node) { return !node.phi.m1.empty(); });
@@ -78,6 +83,9 @@ class SidBody final : public Body {
       shape_.damping = 0.5 * (data.De.m0 + data.De.m0.transpose());
     }
     remarks_ = report.missing;
+    if (hides_a_node())
+      remarks_.emplace_back(
+          "nothing can hang at the file's node 'root': 'root' names the place where the body is held");
     if (options.damping) {
       for (std::string& remark : options.damping->remarks(n)) remarks_.push_back(std::move(remark));
     }
@@ -103,6 +111,17 @@ class SidBody final : public Body {
   std::string measured_station() const override { return measured_station_; }
 
  private:
+  /// Whether the file's node `root`, where it has one, is another place than the one where the body is held, which the
+  /// name means: then it cannot be reached.
+  bool hides_a_node() const {
+    const auto other = node("root");
+    if (!other) return false;
+    const double size = std::max(other->X.norm(), root_.X.norm()), turn = std::max(largest(*other), largest(root_));
+    return (other->X - root_.X).norm() > worth_saying * size || (other->phi - root_.phi).norm() > worth_saying * turn ||
+           (other->psi - root_.psi).norm() > worth_saying * turn;
+  }
+  static double largest(const PointExpansion& at) { return std::max(at.phi.norm(), at.psi.norm()); }
+
   std::optional<PointExpansion> node(const std::string& id) const {
     for (const auto& [name, at] : nodes_) {
       if (name == id) return at;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -125,6 +126,33 @@ TEST(Sid, the_root_may_be_named_as_the_station_is) {
   EXPECT_TRUE(named->station(std::string("root"))->phi.isZero(0));
   EXPECT_EQ(named->shape().length, plain->shape().length);
   EXPECT_EQ(named->shape().damping, plain->shape().damping);
+}
+
+/// A file's node by that name elsewhere could not be reached.
+TEST(Sid, a_node_called_root_is_where_the_body_is_held) {
+  SidReport report;
+  sid::Data roof = car_roof();
+  const auto node = std::find_if(roof.nodes.begin(), roof.nodes.end(), [](const auto& n) { return n.id == "12"; });
+  ASSERT_NE(node, roof.nodes.end());
+  node->id = "root";
+  try {
+    body_of(roof, {}, report);
+    ADD_FAILURE() << "accepted";
+  } catch (const std::domain_error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("the file's node 'root' is not where the body is held"));
+  }
+  EXPECT_EQ(body_of(roof, {"root", {}}, report)->station(std::string("root"))->X, Vector3(1.0, 1.3, 0));
+  const auto elsewhere =
+      body_of(roof, {roof.nodes.front().id == "root" ? roof.nodes.back().id : roof.nodes.front().id, {}}, report);
+  EXPECT_THAT(elsewhere->remarks(),
+              testing::Contains(testing::HasSubstr("nothing can hang at the file's node 'root'")));
+  // At the frame of the file, and moving with it, it is that place.
+  node->origin.m0.setZero();
+  node->phi.m0.setZero();
+  node->phi.m1.clear();
+  node->psi.m0.setZero();
+  node->psi.m1.clear();
+  EXPECT_EQ(body_of(roof, {}, report)->station(std::string("root"))->X, Vector3::Zero());
 }
 
 TEST(Sid, the_station_measured_is_the_node_that_gives_most_under_a_force) {

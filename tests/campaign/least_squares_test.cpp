@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -38,6 +39,32 @@ TEST(LeastSquares, AreFoundBetweenBoundsOnEitherSideAndAtThem) {
       const LeastSquaresResult found = nearest(target, lower, upper);
       EXPECT_TRUE(found.converged) << found.reason;
       EXPECT_NEAR(found.z[0], std::min(std::max(target, lower), upper), 1e-3) << lower << " to " << upper;
+    }
+}
+
+/// Of z − target from 0 on, where points beyond `last` have no residuals.
+LeastSquaresResult nearest_before(double target, double last) {
+  LeastSquaresProblem problem;
+  problem.lower = Eigen::VectorXd::Constant(1, -none);
+  problem.upper = Eigen::VectorXd::Constant(1, none);
+  problem.residuals = 2;
+  problem.evaluate = [&](const Eigen::VectorXd& z, Eigen::VectorXd& r) {
+    r = Eigen::Vector2d(z[0] - target, 0.1);
+    return z[0] <= last;
+  };
+  problem.derivatives = [](const Eigen::VectorXd& /*z*/, Eigen::MatrixXd& J) {
+    J = Eigen::Vector2d(1, 0);
+    return true;
+  };
+  return least_squares(problem, Eigen::VectorXd::Zero(1));
+}
+
+TEST(LeastSquares, HaveNotConvergedWherePointsWithoutResidualsHoldThemUp) {
+  for (const double target : {0.3, 0.7, 1.9})
+    for (const double last : {0.001, 0.1, 0.2999, 0.31, 0.5, 0.6999, 0.8, 1.5, 2.0}) {
+      const LeastSquaresResult found = nearest_before(target, last);
+      EXPECT_EQ(found.converged, target <= last) << target << " before " << last << ": " << found.reason;
+      EXPECT_NEAR(found.z[0], std::min(target, last), 1e-3) << target << " before " << last;
     }
 }
 

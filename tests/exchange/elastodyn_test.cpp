@@ -150,6 +150,25 @@ TEST(ElastoDyn, DecimalCommasAreRefusedWhereTheyStand) {
   EXPECT_THAT(problems_of_blade(decimal), HasSubstr("need 6, one for each column; decimals follow a point"));
 }
 
+TEST(ElastoDyn, WhatTheFileDoesNotSayIsToldAndWhatItSaysTwiceIsRefused) {
+  const std::string file = text_of_file(model_file("blade.dat")), mass = "    1.04536   AdjBlMs ";
+  const auto without = [](const std::string& text, const std::string& key) {
+    const std::size_t at = text.find(key), begin = text.rfind('\n', at) + 1;
+    return text.substr(0, begin) + text.substr(text.find('\n', at) + 1);
+  };
+  const auto remarks = [](const std::string& text) {
+    const Scratch blade("missing.dat", text);
+    return imported({blade.file(), {}, false, 61.5, 0}).remarks;
+  };
+  EXPECT_THAT(remarks(file), testing::Not(Contains(HasSubstr("Not in the file"))));
+  EXPECT_THAT(remarks(without(without(file, "AdjBlMs"), "BldEdDmp(1)")),
+              Contains("Not in the file: AdjBlMs, taken as 1; BldEdDmp(1), taken as 0."));
+  EXPECT_THAT(remarks(without(file, "BldFlDmp(2)")), Contains("Not in the file: BldFlDmp(2), taken as BldFlDmp(1)."));
+  const Scratch blade("twice.dat", replaced(file, mass, "        2.0   AdjBlMs - again\n" + mass));
+  EXPECT_THAT(problems_of({blade.file(), {}, false, 61.5, 0}),
+              HasSubstr("twice.dat:12:1: /: AdjBlMs stands on line 11 already; need it once"));
+}
+
 /// Columns that FAST 7 gave to ADAMS, and where air acts; one that is zero all along leaves nothing out.
 TEST(ElastoDyn, ColumnsThatNoBeamHasAreListed) {
   const std::string file = R"(------- FAST 7 -------
@@ -162,6 +181,9 @@ Blade of 3 rows
    1.0   BldFlDmp(2) - %
    1.0   BldEdDmp(1) - %
    7.5   Sweep - an angle that no beam has
+   1.0   AdjBlMs - factor
+   1.0   AdjFlSt - factor
+   1.0   AdjEdSt - factor
 ---------------------- DISTRIBUTED BLADE PROPERTIES ----
 BlFract AeroCent StrcTwst BMassDen FlpStff EdgStff GJStff EAStff Alpha FlpcgOf
 (-) (-) (deg) (kg/m) (Nm^2) (Nm^2) (Nm^2) (N) (-) (m)

@@ -59,6 +59,42 @@ TEST(Import, ErrorsHaveTheirPlacesAndAllComeAtOnce) {
   EXPECT_THAT(both, HasSubstr("the direction 0 0 0"));
 }
 
+/// A wheel may have an inertia and no mass; a mass may sit where a joint does not move it.
+TEST(Import, APartThatMovesNeedsWhatItsJointMoves) {
+  const Scratch file(".urdf", "");
+  const auto robot = [&](const std::string& mass, const std::string& inertia, const std::string& type) {
+    file.write("<robot name='r'>\n<link name='a'/>\n<link name='b'><inertial><mass value='" + mass +
+               "'/><inertia ixx='" + inertia + "' iyy='" + inertia + "' izz='" + inertia +
+               "'/></inertial></link>\n<joint name='j' type='" + type +
+               "'><parent link='a'/><child link='b'/></joint></robot>");
+    return problems_of({file.file(), {}, false, 0, 0});
+  };
+  EXPECT_EQ(robot("0", "2.5", "continuous"), "");
+  EXPECT_EQ(robot("2", "0", "prismatic"), "");
+  EXPECT_THAT(
+      robot("0", "0", "continuous"),
+      HasSubstr(".urdf:3:1: /robot[r]/link[b]: the link moves by the joint \"j\", and neither it nor what hangs "
+                "on it has mass or inertia"));
+  EXPECT_THAT(robot("2", "0", "continuous"),
+              HasSubstr(".urdf:4:1: /robot[r]/joint[j]: the joint \"j\": the mass matrix is singular"));
+  EXPECT_THAT(robot("0", "2.5", "prismatic"), HasSubstr("the joint \"j\": the mass matrix is singular"));
+  EXPECT_EQ(robot("0", "0", "fixed"), "");
+  robot("2", "1", "continuous");
+  host::Equations f(scene_of({file.file(), {}, false, 0, 0}));
+  EXPECT_EQ(f.size(), 2U);
+}
+
+/// YAML reads a bare `null` as no name.
+TEST(Import, NamesThatAreNoneInScenesAreChanged) {
+  const Scratch file(".urdf",
+                     "<robot name='null'><link name='a'/><link name='NULL'><inertial><mass value='1'/><inertia ixx='1' "
+                     "iyy='1' izz='1'/></inertial></link><joint name='null' type='continuous'><parent link='a'/><child "
+                     "link='NULL'/></joint></robot>");
+  const ImportedScene scene = imported({file.file(), {}, false, 0, 0});
+  EXPECT_THAT(scene.remarks,
+              testing::ElementsAre("link \"NULL\" is called _NULL here", "joint \"null\" is called _null here"));
+}
+
 TEST(Import, ErrorsOfWhatStandsBesideHaveTheirPlacesThere) {
   const Scratch beside(".yaml", "");
   const auto with = [&](const std::string& link) {

@@ -297,7 +297,7 @@ TEST(Urdf, AFloatingBaseWithoutMassUnderOneJointIsRefused) {
   };
   for (const char* root : {"base", "world"})
     EXPECT_THAT(refused(two_links(root, "", "continuous")),
-                testing::HasSubstr("carries no mass, and only the joint \"j\" moves on it"));
+                testing::HasSubstr("has no mass and no inertia, and only the joint \"j\" moves on it"));
   EXPECT_EQ(refused(two_links("base", "3", "continuous")), "");
   EXPECT_EQ(refused(two_links("base", "", "fixed")), "");
 }

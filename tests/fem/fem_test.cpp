@@ -12,6 +12,7 @@
 #include "reduced_case.hpp"
 #include "withy/bodies/modal/sid_body.hpp"
 #include "withy/core/plugin/equations.hpp"
+#include "withy/fem/import.hpp"
 #include "withy/fem/summary.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"
@@ -172,6 +173,68 @@ TEST(Files, of_abaqus_may_have_a_triangle_in_any_order_of_nodes) {
   EXPECT_NE(K.coeff(3, 0), 0);
   EXPECT_THAT(refusal([&] { (void)read_abaqus(folder.with("K.mtx", lopsided.str()), c.mesh); }),
               HasSubstr("the matrix is not symmetric"));
+}
+
+/// The line of sizes is no element of the matrix; what a heading announces is there.
+TEST(Files, of_matrix_market_have_a_heading_and_sizes) {
+  const Case c(data / "brick", 0);
+  const Folder folder;
+  const SparseMatrix& K = c.matrices.K;
+  std::ostringstream both, lower;
+  both.precision(17);
+  lower.precision(17);
+  Eigen::Index count = 0, below = 0;
+  for (Eigen::Index j = 0; j < K.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator it(K, j); it; ++it) {
+      both << it.row() + 1 << ' ' << j + 1 << ' ' << it.value() << '\n';
+      ++count;
+      if (it.row() < j) continue;
+      lower << it.row() + 1 << ' ' << j + 1 << ' ' << it.value() << '\n';
+      ++below;
+    }
+  }
+  const std::string rows = std::to_string(K.rows());
+  const auto sizes = [&](Eigen::Index elements) { return rows + " " + rows + " " + std::to_string(elements) + "\n\n"; };
+  const std::string heading = "%%MatrixMarket matrix coordinate real ", remark = "% made by a test, of a brick\n";
+  for (const std::string& text : {heading + "general\n" + remark + sizes(count) + both.str(),
+                                  heading + "symmetric\r\n" + sizes(below) + lower.str(), remark + both.str()}) {
+    const NamedMatrix read = read_abaqus(folder.with("K.mtx", text), c.mesh);
+    EXPECT_EQ((arranged(read, c.matrices.nodes) - K).norm(), 0);
+  }
+  const auto refused = [&](const std::string& text) {
+    return refusal([&] { (void)read_abaqus(folder.with("K.mtx", text), c.mesh); });
+  };
+  EXPECT_THAT(refused(heading + "general\n" + sizes(count + 1) + both.str()),
+              HasSubstr("K.mtx: got " + std::to_string(count) + " elements; its line of sizes says " +
+                        std::to_string(count + 1)));
+  EXPECT_THAT(refused(heading + "general\n3 3 1\n1 1 2.5\n"),
+              HasSubstr("K.mtx:2: got a matrix of 3 by 3; need " + rows + " by " + rows));
+  for (const char* other : {"%%MatrixMarket matrix array real general\n",
+                            "%%MatrixMarket matrix coordinate complex "
+                            "hermitian\n",
+                            "%%MatrixMarket matrix coordinate real skew-symmetric\n"})
+    EXPECT_THAT(refused(other + sizes(1) + "1 1 2\n"), HasSubstr("K.mtx:1: got '%%MatrixMarket"));
+}
+
+/// Some editors put a mark of UTF-8 before the text.
+TEST(Files, with_a_mark_of_utf8_are_read) {
+  const Folder folder;
+  const Mesh deck = read_mesh(folder.with("a.inp", "\xef\xbb\xbf*NODE\n7, 1, 0, 0\n"));
+  EXPECT_EQ(deck.nodes.at(7), Vector3(1, 0, 0));
+}
+
+/// `root` is where the body is held, and no other place of it can have the name.
+TEST(Files, no_interface_is_called_root) {
+  ImportJob job;
+  job.job = cantilever.string();
+  job.root = "TIP";
+  job.modes = 2;
+  for (const char* name : {"root", "root=ROOT"}) {
+    job.interfaces = {name};
+    EXPECT_THAT(refusal([&] { (void)import(job); }), HasSubstr("give it another, as tip="));
+  }
+  job.interfaces = {"ROOT"};
+  EXPECT_EQ(import(job).body.nodes.back().id, "ROOT");
 }
 
 TEST(Files, that_cannot_be_used_are_refused_with_their_place) {

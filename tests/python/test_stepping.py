@@ -1,5 +1,6 @@
 """Simulations that a host steps, and equations for a host's own integrator."""
 
+import concurrent.futures
 import math
 import pathlib
 import pickle
@@ -203,3 +204,21 @@ def test_scipy_integrates_the_equations():
         jac = {} if method == "RK45" else {"jac": equations.jacobian}
         solution = integrate.solve_ivp(equations.derivatives, (0, 1), equations.y0, method, rtol=1e-8, **jac)
         assert solution.y[:, -1] == pytest.approx([0.5, 1], abs=1e-6)
+
+
+def test_threads_give_the_bits_of_one(slew):
+    equations = slew.compile()
+
+    def walk(_):
+        y = equations.y0
+        for k in range(300):
+            y = rk4(equations.derivatives, 0.001 * k, y, 0.001)
+        return y
+
+    def run(_):
+        return slew.copy().run(time={"end": 0.3}).table
+
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        for job in (walk, run):
+            first, *others = pool.map(job, range(4))
+            assert all(numpy.array_equal(first, other) for other in others)

@@ -214,24 +214,6 @@ def test_errors_have_their_places(slew, tmp_path):
         withy.load(tmp_path / "none.yaml")
 
 
-def test_threads_give_the_bits_of_one(slew):
-    equations = slew.compile()
-
-    def walk(_):
-        y = equations.y0
-        for k in range(300):
-            y = rk4(equations.derivatives, 0.001 * k, y, 0.001)
-        return y
-
-    def run(_):
-        return slew.copy().run(time={"end": 0.3}).table
-
-    with concurrent.futures.ThreadPoolExecutor(4) as pool:
-        for job in (walk, run):
-            first, *others = pool.map(job, range(4))
-            assert all(numpy.array_equal(first, other) for other in others)
-
-
 def test_ctrl_c_ends_a_run(slew):
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
