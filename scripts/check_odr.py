@@ -11,7 +11,7 @@ HIDDEN = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(
                     re.S | re.M)
 NAMESPACE = re.compile(r'(?:^|\s)(?:inline\s+)?namespace\s*([\w:]*)\s*$')
 TYPE = re.compile(r'(?:^|[\s>])(?:class|struct|union|enum(?:\s+class|\s+struct)?)\s+(?:\[\[.*?\]\]\s*|alignas\([^)]*\)\s*)*'
-                  r'([\w:]+)(?:\s+final)?\s*(?::(?!:).*)?$', re.S)
+                  r'(\w+(?:::\w+)*)(?:\s+final)?\s*(?::(?!:).*)?$', re.S)
 INLINE = re.compile(r'\b(?:inline|constexpr|consteval)\b.*?([\w:~]+)\s*(\(.*\))[^()]*$', re.S)
 
 
@@ -73,6 +73,8 @@ def self_test():
                        'namespace sweep { struct Tree {}; } struct Tree; void g() { struct Local {}; } }',
         'tests/a/a.cpp': 'namespace withy { struct Help {}; template <> struct Traits<Tree> {}; }',
         'tests/b/a.cpp': 'namespace withy { struct Help {}; template <> struct Traits<Help> {}; }',
+        'host/a.cpp': 'template <> class far::detail::caster<A> : public Base<A> {};',
+        'host/b.cpp': 'template <> class far::detail::caster<B> : public Base<B> {};',
     }
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
