@@ -1,4 +1,5 @@
 // Files of studies have in each column, and under each name, what their heads say.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <complex>
