@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "withy/core/plugin/mode_family.hpp"
@@ -123,8 +126,30 @@ std::string trade_csv(const std::vector<study::TradeResult>& results, const std:
   return text;
 }
 
+namespace {
+
+/// Where errors of zero [%] are drawn, which logarithms have no place for: a decade below all others; nothing where
+/// there are none.
+std::optional<double> zero_errors(const std::vector<study::TradeResult>& results) {
+  bool any = false;
+  double least = std::numeric_limits<double>::infinity();
+  for (const study::TradeResult& r : results) {
+    if (!r.completed()) continue;
+    if (r.relative_error > 0)
+      least = std::min(least, 100 * r.relative_error);
+    else
+      any = true;
+  }
+  if (!any) return {};
+  return std::isfinite(least) ? 0.1 * least : 1e-12;
+}
+
+}  // namespace
+
 std::string trade_picture(const std::string& title, const std::vector<study::TradeResult>& results,
                           const std::vector<bool>& front) {
+  const std::optional<double> zero = zero_errors(results);
+  const std::string error = zero ? fmt::format("error [%], 0 at {:.1g}", *zero) : "error [%]";
   std::vector<std::string> legend;
   std::map<std::string, std::size_t> pens;
   for (const study::TradeResult& r :
@@ -142,12 +167,12 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
     const auto p = static_cast<std::size_t>(at - overs.begin());
     if (at == overs.end()) {
       overs.push_back(over);
-      panels.push_back({"CPU time [ms]" + (over.empty() ? "" : ", " + over), "error [%]", {1e300, 0}, {}});
+      panels.push_back({"CPU time [ms]" + (over.empty() ? "" : ", " + over), error, {1e300, 0}, {}});
       panels.back().log_x = panels.back().log_y = true;
       panels.back().curves.resize(legend.size());
       for (std::size_t c = 0; c < line; ++c) panels.back().curves[c].points = true;
     }
-    const double x = 1e3 * r.cpu_seconds, y = std::max(100 * r.relative_error, 1e-12);
+    const double x = 1e3 * r.cpu_seconds, y = r.relative_error > 0 ? 100 * r.relative_error : zero.value_or(0);
     const auto add = [&](Curve& curve) {
       curve.x.push_back(x);
       curve.y.push_back(y);

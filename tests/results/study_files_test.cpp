@@ -1,4 +1,5 @@
 // Files of studies have in each column, and under each name, what their heads say.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -185,6 +186,23 @@ TEST(StudyFiles, APointOfATradeThatWasKeptIsFoundAgainWhole) {
   EXPECT_EQ(trade_result_json(found->result), trade_result_json(kept.result));
   EXPECT_EQ(trade_reference_json(found->reference), trade_reference_json(kept.reference));
   EXPECT_EQ(found->result.reference_error, 13);
+}
+
+// Logarithms have no place for zero: it stands a decade below all others, and the axis says so.
+TEST(TradePicture, ErrorsOfZeroHaveAPlaceOfTheirOwn) {
+  const auto drawn = [](const std::vector<double>& errors) {
+    std::vector<study::TradeResult> results;
+    for (const double error : errors) {
+      study::TradeResult& r = results.emplace_back();
+      r.status = "completed";
+      r.relative_error = error;
+      r.cpu_seconds = 1e-3 * static_cast<double>(results.size());
+    }
+    return trade_picture("trade", results, std::vector<bool>(errors.size(), true));
+  };
+  EXPECT_THAT(drawn({1e-2, 4e-5}), testing::Not(testing::HasSubstr("error [%], 0 at")));
+  EXPECT_THAT(drawn({1e-2, 4e-5, 0}), testing::HasSubstr("error [%], 0 at 0.0004"));
+  EXPECT_THAT(drawn({0, 0}), testing::HasSubstr("error [%], 0 at 1e-12"));
 }
 
 }  // namespace
