@@ -35,7 +35,9 @@ std::vector<HingeRate> hinge_rates(const Hinge& hinge) {
     rates[r] = 1;
     hinge.motion(displaced, rates, motion);
     const bool turns = !motion.H.col(static_cast<Eigen::Index>(r)).head<3>().isZero(0);
-    result[r].angular = known ? turns : hinge.angular(r).value_or(turns);
+    result[r].angular = turns;
+    if (!known)
+      if (const std::optional<bool> told = hinge.angular(r); told.has_value()) result[r].angular = *told;
     hinge.derivatives(displaced, rates, x_dot);
     result[r].coordinate = unit_index(x_dot);
     hinge.derivatives(reference, rates, x_dot);
