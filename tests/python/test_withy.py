@@ -17,22 +17,9 @@ import numpy
 import pytest
 
 import withy
+from turntable import TURNTABLE
 
 SCENES = pathlib.Path(__file__).parents[2] / "scenes"
-
-TURNTABLE = """
-format: withy/1
-time: {end: 2, output: 0.5}
-integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
-bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
-hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
-loads: {command: {type: input, hinge: axle}}
-"""
-
-
-@pytest.fixture
-def slew():
-    return withy.load(SCENES / "two-link-slew.yaml")
 
 
 def test_a_run_is_a_table_by_names(slew):
