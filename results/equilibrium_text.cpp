@@ -22,19 +22,21 @@ using Json = nlohmann::ordered_json;
 TextTable hinge_table(const study::Configuration& c, const SteadyState& steady) {
   TextTable table({"<coordinate", "value", "<unit", "rate\n[rad/s, m/s]", "<held", "effort\n[N m, N]"});
   const Model& model = c.prepared().model();
+  const Held kept = c.kept();
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const Slot& slot = c.layout().hinges[h];
     const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
     const std::vector<Column> coordinates = coordinate_columns(model.hinges()[h]),
                               of_rates = rate_columns(model.hinges()[h]);
     const auto add = [&](const std::string& name, std::optional<std::size_t> coordinate, std::optional<std::size_t> i) {
-      const bool held = i && c.held()[slot.speed + *i];
+      const bool held = i && kept[slot.speed + *i];
       table.add({name, coordinate ? fmt::format("{:.6g}", steady.state.y[slot.position + *coordinate]) : "-",
                  coordinate ? coordinates[*coordinate].unit : "",
                  i ? fmt::format("{:.6g}", steady.state.y[c.layout().positions + slot.speed + *i]) : "-",
-                 !i     ? "-"
-                 : held ? "yes"
-                        : "no",
+                 !i                           ? "-"
+                 : held                       ? "yes"
+                 : c.follows(slot.speed + *i) ? "follows"
+                                              : "no",
                  held ? fmt::format("{:.6g}", steady.efforts[static_cast<Eigen::Index>(slot.speed + *i)]) : "-"});
     };
     for (std::size_t k = 0; k < slot.positions; ++k) {
@@ -92,7 +94,7 @@ Json equilibrium_json(const study::Configuration& c, const study::Equilibrium& f
   Json j;
   j["scene"] = c.prepared().scene.file;
   j["formulation"] = c.prepared().scene.formulation_name;
-  j.update(steady_json(c.prepared().model(), found.steady, c.held()));
+  j.update(steady_json(c.prepared().model(), found.steady, c.kept()));
   Json deflections = Json::object();
   for (const auto& [name, d] : found.deflections) deflections[name] = d;
   j["tip_deflections"] = std::move(deflections);

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/digital_part.hpp"
@@ -16,7 +18,6 @@
 #include "withy/study/check_loads.hpp"
 #include "withy/study/creep.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/refusals.hpp"
 
 namespace withy::study {
 namespace {
@@ -90,8 +91,8 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
     : prepared_(prepared),
       dynamics_(prepared.scene.model, prepared.scene.formulation->terms()),
       state_(std::move(state)),
-      held_(layout().speeds, false) {
-  refuse_loops(prepared, "what linearizes a scene (modes, equilibrium, linearize, response)");
+      held_(layout().speeds, false),
+      follows_(held_) {
   const Model& model = prepared_.model();
   for (const LoadSlot& slot : layout().discrete_slots) require_no_switches(prepared.scene.file, model, slot);
   model.prescribe(state_);
@@ -115,13 +116,46 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
     }
   }
   for (const Spin& spun : holding.spun) spin(spun);
+  dynamics_.keep_closed(prepared_.equations, state_, held_);
+  follows_ = dynamics_.follows();
+  for (std::size_t s = 0; s < held_.size(); ++s) held_[s] = held_[s] || follows_[s];
   state_ = without_creep(dynamics_, std::move(state_), held_, tolerance_of(prepared_.scene));
+  rest_loops();
+}
+
+void Configuration::rest_loops() {
+  /// [rad/s, m/s] What integrators leave of a rest.
+  constexpr double resting = 1e-6;
+  const std::vector<bool> in_loops = speeds_in_loops(prepared_.model());
+  Eigen::Map<Eigen::VectorXd> speeds(state_.y.data() + layout().positions, static_cast<Eigen::Index>(layout().speeds));
+  const Eigen::VectorXd closed = dynamics_.whole(state_.y, speeds);
+  if (!closed.allFinite())
+    throw InputError(prepared_.scene.file +
+                     ": the closed loops are in a singular configuration, about which there are no small motions: "
+                     "start from another state");
+  for (std::size_t s = 0; s < in_loops.size(); ++s) {
+    if (!in_loops[s]) continue;
+    double& rate = speeds[static_cast<Eigen::Index>(s)];
+    if (!(std::abs(rate) <= resting))
+      throw InputError(fmt::format(
+          "{}: {} is in a closed loop and moves, at {:.3g} a second: small motions, and what stays as it is, are told "
+          "about loops at rest: let the rates in 'initial' be 0",
+          prepared_.scene.file, layout().speed_names[s], rate));
+    rate = 0;
+  }
+}
+
+Held Configuration::kept() const {
+  Held kept = held_;
+  for (std::size_t s = 0; s < kept.size(); ++s) kept[s] = kept[s] && !follows_[s];
+  return kept;
 }
 
 std::vector<std::string> Configuration::held_names() const {
   std::vector<std::string> names;
-  for (std::size_t s = 0; s < held_.size(); ++s) {
-    if (held_[s]) names.push_back(layout().speed_names[s]);
+  const Held kept = this->kept();
+  for (std::size_t s = 0; s < kept.size(); ++s) {
+    if (kept[s]) names.push_back(layout().speed_names[s]);
   }
   return names;
 }
@@ -131,6 +165,8 @@ void Configuration::spin(const Spin& spin) {
   if (prepared_.model().driven(hinge_of(layout(), speed)))
     throw OptionError("spin", fmt::format("a motion of the scene drives '{}' already", spin.name));
   if (!std::isfinite(spin.rate)) throw OptionError("spin", "rate of '" + spin.name + "': need a finite number");
+  if (spin.rate != 0 && hinges_in_loops(prepared_.model())[hinge_of(layout(), speed)])
+    throw OptionError("spin", fmt::format("'{}' is in a closed loop, which changes its shape as it turns", spin.name));
   held_[speed] = true;
   state_.y[layout().positions + speed] = spin.rate;
 }
@@ -138,8 +174,8 @@ void Configuration::spin(const Spin& spin) {
 void Configuration::begin_at(const State& state) {
   const Layout& order = layout();
   const auto take = [&](const Slot& slot) {
-    for (std::size_t i = 0; i < slot.speeds; ++i) {
-      if (held_[slot.speed + i]) return;
+    for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) {
+      if (held_[i] && !follows_[i]) return;
     }
     for (std::size_t i = 0; i < slot.positions; ++i) state_.y[slot.position + i] = state.y[slot.position + i];
   };
@@ -148,6 +184,10 @@ void Configuration::begin_at(const State& state) {
   for (std::size_t i = order.positions + order.speeds; i < order.moving(); ++i) state_.y[i] = state.y[i];
   for (const LoadSlot& slot : sampled_slots(prepared_.model()))
     for (std::size_t i = slot.first; i < slot.first + slot.count; ++i) state_.y[i] = state.y[i];
+  // Its loops may have had other lengths.
+  const State own = state_;
+  dynamics_.displace(state_.y, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order.speeds)));
+  if (std::any_of(state_.y.begin(), state_.y.end(), [](double y) { return std::isnan(y); })) state_ = own;
 }
 
 bool Configuration::sampled() const { return !sampled_slots(prepared_.model()).empty(); }
@@ -247,9 +287,10 @@ Holding read_holding(const Model& model, const std::vector<std::string>& lock, c
 }
 
 std::string derivatives_text(const Tangents& tangents) {
-  if (tangents.differenced.empty()) return "exact";
-  return fmt::format("exact but for the loads {}, by central differences of eighth order",
-                     fmt::join(tangents.differenced, ", "));
+  std::string but;
+  if (!tangents.differenced.empty()) but = fmt::format("the loads {}", fmt::join(tangents.differenced, ", "));
+  if (tangents.loops) but += but.empty() ? "what closes loops" : " and what closes loops";
+  return but.empty() ? "exact" : fmt::format("exact but for {}, by central differences of eighth order", but);
 }
 
 }  // namespace withy::study

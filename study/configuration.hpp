@@ -27,15 +27,19 @@ class Configuration {
  public:
   /// Sampled loads that have not begun hold what they give at the state. Hinges that an integrator has left creeping
   /// about rest are at rest (without_creep).
-  /// \throws InputError where a load switches, or there is no such hinge; SceneError where a load is wrong about its
-  /// derivatives.
+  /// \throws InputError where a load switches, there is no such hinge, or the shape of a closed loop changes; SceneError
+  /// where a load is wrong about its derivatives.
   Configuration(const Prepared& prepared, State state, const Holding& holding);
 
   [[nodiscard]] const Prepared& prepared() const { return prepared_; }
   [[nodiscard]] const Layout& layout() const { return prepared_.model().layout(); }
   [[nodiscard]] const TangentDynamics& dynamics() const { return dynamics_; }
   [[nodiscard]] const State& state() const { return state_; }
+  /// What has no motion of its own: speeds that are held, and those that follow others as closed loops ask for.
   [[nodiscard]] const Held& held() const { return held_; }
+  [[nodiscard]] bool follows(std::size_t speed) const { return follows_[speed]; }
+  /// What is held, without what follows.
+  [[nodiscard]] Held kept() const;
   /// Names of the speeds that are held, as "axle.0".
   [[nodiscard]] std::vector<std::string> held_names() const;
 
@@ -48,10 +52,13 @@ class Configuration {
   void set_state(State state) { state_ = std::move(state); }
 
  private:
+  /// What integrators leave of a rest goes. \throws InputError where the shape of a loop changes
+  void rest_loops();
+
   Prepared prepared_;
   TangentDynamics dynamics_;
   State state_;
-  Held held_;
+  Held held_, follows_;
 };
 
 /// Where a state has what the sampled loads of a model hold, but for what outputs alone show of them.

@@ -17,13 +17,12 @@ Eigen::MatrixX3d momenta_at(const Configuration& c, const State& at, const std::
   const auto seen = c.prepared().equations->make_observation();
   Eigen::MatrixX3d P(static_cast<Eigen::Index>(free.size()), 3);
   std::vector<double> y = at.y;
-  const auto speeds = y.begin() + static_cast<std::ptrdiff_t>(c.layout().positions);
-  std::fill(speeds, speeds + static_cast<std::ptrdiff_t>(c.layout().speeds), 0.0);
+  const auto n = static_cast<Eigen::Index>(c.layout().speeds);
   for (Eigen::Index i = 0; i < P.rows(); ++i) {
-    speeds[free[static_cast<std::size_t>(i)]] = 1;
+    Eigen::Map<Eigen::VectorXd>(y.data() + c.layout().positions, n) =
+        c.dynamics().whole(at.y, Eigen::VectorXd::Unit(n, free[static_cast<std::size_t>(i)]));
     seen->observe(y);
     P.row(i) = Eigen::Map<const Eigen::RowVector3d>(seen->energies().linear_momentum.data());
-    speeds[free[static_cast<std::size_t>(i)]] = 0;
   }
   return P;
 }

@@ -87,8 +87,10 @@ class FeltGraph {
   /// \param of node: were it renewed too, the others would be given its new numbers
   FeltEffects effects(const State& state, std::size_t of) {
     const Model& model = c_.prepared().model();
-    FeltEffects now{
-        load_efforts(*c_.prepared().equations, state.time, state, EquationsOfMotion::all_loads, work_), {}, {}};
+    FeltEffects now{c_.dynamics().on_motions(state.y, load_efforts(*c_.prepared().equations, state.time, state,
+                                                                   EquationsOfMotion::all_loads, work_)),
+                    {},
+                    {}};
     now.rates.resize(c_.layout().continuous);
     for (const LoadNode& node : model.loads()) {
       if (node.continuous == nullptr) continue;

@@ -56,8 +56,9 @@ std::vector<std::size_t> named_speeds(const Configuration& c, const std::string&
                                     ? problem
                                     : fmt::format("{}; loads of the type input: {}", problem, fmt::join(inputs, ", ")));
   }
+  const Held kept = c.kept();
   for (const std::size_t s : speeds)
-    if (c.held()[s]) throw OptionError("inputs", c.layout().speed_names[s] + " is held: no effort moves it");
+    if (kept[s]) throw OptionError("inputs", c.layout().speed_names[s] + " is held: no effort moves it");
   return speeds;
 }
 
@@ -68,9 +69,10 @@ std::vector<LinearInput> chosen_inputs(const Configuration& c, const SmallMotion
   const Model& model = c.prepared().model();
   const std::vector<std::size_t> loads = input_loads(model);
   std::vector<LinearInput> drives;
+  const Held kept = c.kept();
   const auto add_speeds = [&](const std::vector<std::size_t>& speeds) {
     for (const std::size_t s : speeds)
-      if (!c.held()[s]) drives.push_back(input_of_speed(motions, s));
+      if (!kept[s]) drives.push_back(input_of_speed(motions, s));
   };
   if (names.size() == 1 && names[0] == "all") {
     std::vector<std::size_t> every(c.layout().speeds);

@@ -85,6 +85,12 @@ std::vector<LinearOutput> with_rows(const Configuration& c, const std::vector<Ti
     output.row = Eigen::RowVectorXd::Zero(2 * n);
     output.row.head(n) = (deflection ? t.deflection_by_position : t.by_position).row(axis);
   }
+  for (LinearOutput& output : outputs) {
+    if (output.sensed >= 0) continue;
+    // What follows in closed loops moves as others do.
+    output.row.head(n) = c.dynamics().on_motions(c.state().y, output.row.head(n).transpose()).transpose();
+    output.row.tail(n) = c.dynamics().on_motions(c.state().y, output.row.tail(n).transpose()).transpose();
+  }
   return outputs;
 }
 

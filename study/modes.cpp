@@ -41,13 +41,24 @@ void find_sampled_modes(const Configuration& c, const Tangents& tangents, ModesA
   const Eigen::MatrixXd by_held = sampled.moved(0 * sampled.efforts());
   const Eigen::MatrixXd unheld =
       unheld_motions(tangents, c.held(),
-                     {sampled.efforts(), by_held.bottomRows(states), sampled.renewal(held).bottomRows(sampled.size())});
+                     {c.dynamics().on_motions(c.state().y, sampled.efforts()), by_held.bottomRows(states),
+                      sampled.renewal(held).bottomRows(sampled.size())});
   MapModes found = modes_of_map(
       {sampled.map(held).first, sampled.period(), balancing_units(motions.A(), masses), masses, unheld, between},
       c.held());
   at.modes = std::move(found.modes);
   at.forgotten = found.gone;
   at.period = sampled.period();
+}
+
+/// Shapes with what follows in closed loops.
+void add_followers(const Configuration& c, const State& state, std::vector<Mode>& modes) {
+  const auto n = static_cast<Eigen::Index>(c.layout().speeds);
+  for (Mode& mode : modes) {
+    const Eigen::VectorXd re = mode.shape.head(n).real(), im = mode.shape.head(n).imag();
+    mode.shape.head(n).real() = c.dynamics().whole(state.y, re);
+    mode.shape.head(n).imag() = c.dynamics().whole(state.y, im);
+  }
 }
 
 }  // namespace
@@ -69,7 +80,7 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
   at.model = c.prepared().scene.model;
   State state = c.state();
   if (!as_is) {
-    at.steady = SteadyFound{steady_state_of(c), c.held(), {}, {}};
+    at.steady = SteadyFound{steady_state_of(c), c.kept(), {}, {}};
     at.problem = no_steady_state(c, at.steady->steady);
     if (!at.steady->steady.converged) return at;
     state = at.steady->steady.state;
@@ -84,6 +95,7 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
     } else {
       at.modes = natural_modes(tangents, c.held());
     }
+    add_followers(c, state, at.modes);
     at.masses = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.names.size()));
     at.masses.head(tangents.mass.rows()) = tangents.mass.diagonal().cwiseAbs();
     if (!as_is) {

@@ -170,6 +170,7 @@ std::vector<double> reached_ratios(const Configuration& c, Registry& registry, c
 }  // namespace
 
 MountedDamping mounted_damping(const Configuration& c, Registry& registry, const std::vector<double>& ratios) {
+  refuse_loops(c.prepared(), "--damp");
   refuse_states_of_loads(c.prepared(), "--damp");
   std::vector<Damped> bodies = damped_bodies(c.prepared(), registry);
   Index most = 0, all = 0;

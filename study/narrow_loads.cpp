@@ -75,7 +75,8 @@ class EffortsOverATurn {
     return asked == Change::any ? by.maxCoeff() : by.head(by.size() / 2).maxCoeff();
   }
   Eigen::VectorXd efforts(double time, const State& state, int load) {
-    return load_efforts(*c_.prepared().equations, time, state, load, work_)(free_);
+    return c_.dynamics().on_motions(state.y, load_efforts(*c_.prepared().equations, time, state, load, work_))(free_,
+                                                                                                               0);
   }
 
   const Configuration& c_;

@@ -78,13 +78,14 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
   const Slot* const slot = hinge.empty() ? nullptr : c.layout().hinge(hinge);
   if (!hinge.empty() && slot == nullptr)
     throw OptionError("input", "no hinge '" + hinge + "' that load '" + name + "' could act on");
+  const Held kept = c.kept();
   Eigen::MatrixXd slopes = all;
   std::vector<std::string> names;
   std::vector<std::size_t> speeds;
   for (std::size_t s = 0; s < c.layout().speeds; ++s) {
     const auto row = static_cast<Eigen::Index>(s);
     const bool here = slot == nullptr || (s >= slot->speed && s < slot->speed + slot->speeds);
-    if (!here || c.held()[s]) slopes.row(row).setZero();
+    if (!here || kept[s]) slopes.row(row).setZero();
     if (slopes.row(row).isZero(0)) continue;
     names.push_back(c.layout().speed_names[s]);
     speeds.push_back(s);

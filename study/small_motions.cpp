@@ -78,7 +78,8 @@ SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> senso
   const Tangents tangents = dynamics_.tangents(c.state().time, c.state().y, accelerations_);
   derivatives_ = derivatives_text(tangents);
   FirstOrderForm form = whole_first_order_form(tangents, c.held());
-  A_ = std::move(form.A), by_effort_ = std::move(form.B);
+  A_ = std::move(form.A);
+  by_effort_ = dynamics_.whole(c.state().y, form.B.transpose()).transpose();
   for (const Eigen::Index s : free_) names_.push_back(model_->layout().speed_names[static_cast<std::size_t>(s)]);
   for (std::size_t i = 0; i < free_.size(); ++i) names_.push_back(names_[i] + ".rate");
   const std::vector<std::string>& of_loads = model_->layout().continuous_names;
@@ -87,9 +88,10 @@ SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> senso
 }
 
 void SmallMotions::hold(const Configuration& c, Model& model, bool needed) {
+  const Held kept = c.kept();
   for (std::size_t h = 0; h < c.layout().hinges.size(); ++h) {
     const Slot& slot = c.layout().hinges[h];
-    const auto first = c.held().begin() + static_cast<std::ptrdiff_t>(slot.speed);
+    const auto first = kept.begin() + static_cast<std::ptrdiff_t>(slot.speed);
     const auto held = std::count(first, first + static_cast<std::ptrdiff_t>(slot.speeds), true);
     if (held == 0 || model.driven(h)) continue;
     if (static_cast<std::size_t>(held) == slot.speeds) {
@@ -132,11 +134,12 @@ State SmallMotions::displaced(Eigen::Index i, double h) const {
     moved.y[layout.positions + layout.speeds + static_cast<std::size_t>(i - 2 * m)] += h;
     return moved;
   }
-  const Eigen::Index speed = free_[static_cast<std::size_t>(i % m)];
+  const Eigen::VectorXd by = h * Eigen::VectorXd::Unit(by_effort_.cols(), free_[static_cast<std::size_t>(i % m)]);
   if (i < m)
-    dynamics_.displace(moved.y, h * Eigen::VectorXd::Unit(by_effort_.cols(), speed));
+    dynamics_.displace(moved.y, by);
   else
-    moved.y[model_->layout().positions + static_cast<std::size_t>(speed)] += h;
+    Eigen::Map<Eigen::VectorXd>(moved.y.data() + model_->layout().positions, by.size()) +=
+        dynamics_.whole(state_.y, by);
   return moved;
 }
 

@@ -166,8 +166,8 @@ Displacement StatesToCome::everything() const {
     for (Eigen::Index i = 0; i < m; ++i) {
       const Eigen::Index s = free[static_cast<std::size_t>(i)];
       by[s] = steps * weight_of(i) * motions_.step(i);
-      state.y[layout.positions + static_cast<std::size_t>(s)] += by[s];
     }
+    Eigen::Map<Eigen::VectorXd>(state.y.data() + layout.positions, by.size()) += c_.dynamics().whole(state.y, by);
     c_.dynamics().displace(state.y, by);
     for (Eigen::Index i = 2 * m; i < motions_.size(); ++i)
       state.y[layout.positions + layout.speeds + static_cast<std::size_t>(i - 2 * m)] +=

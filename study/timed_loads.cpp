@@ -128,8 +128,8 @@ class Pushes {
   Eigen::VectorXd of(double t, const State& state, std::size_t load) {
     const std::size_t speeds = c_.layout().speeds;
     Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(speeds + c_.layout().continuous));
-    all.head(static_cast<Eigen::Index>(speeds)) =
-        load_efforts(*c_.prepared().equations, t, state, static_cast<int>(load), work_);
+    all.head(static_cast<Eigen::Index>(speeds)) = c_.dynamics().on_motions(
+        state.y, load_efforts(*c_.prepared().equations, t, state, static_cast<int>(load), work_));
     if (const LoadNode& node = c_.prepared().model().loads()[load]; node.continuous != nullptr) {
       LoadView view = node.view(t, state.y, c_.layout(), scratch_);
       // Whose change with time makes others is told itself.
@@ -269,8 +269,8 @@ State displaced_anyhow(const Configuration& c, State state, double times) {
   Eigen::VectorXd by(static_cast<Eigen::Index>(layout.speeds));
   for (Eigen::Index s = 0; s < by.size(); ++s) {
     by[s] = c.held()[static_cast<std::size_t>(s)] ? 0.0 : times * far * (1 + std::cos(static_cast<double>(s)) / 2);
-    state.y[layout.positions + static_cast<std::size_t>(s)] += by[s];
   }
+  Eigen::Map<Eigen::VectorXd>(state.y.data() + layout.positions, by.size()) += c.dynamics().whole(state.y, by);
   for (std::size_t i = layout.positions + layout.speeds; i < layout.moving(); ++i)
     state.y[i] += times * far * (1 + std::abs(state.y[i])) * (1 + std::cos(static_cast<double>(i)) / 2);
   c.dynamics().displace(state.y, by);

@@ -93,7 +93,7 @@ std::string greatest_displacement(const Turn& turn, const Configuration& c) {
   const Layout& layout = c.layout();
   for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
     const Slot& slot = layout.hinges[h];
-    if (c.held()[slot.speed]) continue;
+    if (c.held()[slot.speed] && !c.follows(slot.speed)) continue;
     const std::vector<Column> columns = coordinate_columns(c.prepared().model().hinges()[h]);
     for (std::size_t i = 0; i < slot.positions; ++i) meet(columns[i], slot.position + i);
   }

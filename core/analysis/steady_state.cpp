@@ -220,7 +220,7 @@ Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& stat
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
   if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
   a(free) = -lu.solve(residual(free));
-  return a;
+  return dynamics.whole(state.y, a);
 }
 
 SteadyState find_steady_state(const TangentDynamics& dynamics, const State& start, const Held& held) {

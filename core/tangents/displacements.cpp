@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/tangents/closed_motions.hpp"
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
 namespace withy {
@@ -25,7 +26,9 @@ void displace(const Model& model, std::span<double> y, std::span<const double> d
 }
 
 void TangentDynamics::displace(std::span<double> y, const Eigen::VectorXd& delta) const {
-  withy::displace(*model_, y, {delta.data(), model_->layout().speeds});
+  const Eigen::VectorXd all = whole(y, delta);
+  withy::displace(*model_, y, {all.data(), model_->layout().speeds});
+  if (closed_) closed_->close(y);
 }
 
 Eigen::MatrixXd TangentDynamics::drift(std::span<const double> y) const {

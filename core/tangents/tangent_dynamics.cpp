@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/tangents/closed_motions.hpp"
 #include "withy/core/tangents/first_order_recursion.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
 #include "withy/core/tangents/seeded_states.hpp"
@@ -150,22 +151,26 @@ Eigen::VectorXd TangentDynamics::reflected() const {
   return inertia;
 }
 
-Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
+Eigen::VectorXd TangentDynamics::open_residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   Plain plain;
   return efforts<double>(t, y, a, {}, plain) + reflected().cwiseProduct(a) + elastic(y) - load_efforts(t, y);
 }
 
-Eigen::VectorXd TangentDynamics::terms_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
+Eigen::VectorXd TangentDynamics::terms_in_play(double t, std::span<const double> y,
+                                               const Eigen::VectorXd& moving) const {
+  const Eigen::VectorXd a = whole(y, moving);
   const Builder<double> build{*this, y, a, {}};
   const Recursion<double> tree(*model_, build.hinges(), build.bodies([](std::size_t) { return false; }));
-  return analysis::sizes_of(tree, wrenches(t, y, tree, nullptr)) + reflected().cwiseProduct(a).cwiseAbs() +
-         elastic(y).cwiseAbs() + load_sizes(t, y);
+  const Eigen::VectorXd sizes = analysis::sizes_of(tree, wrenches(t, y, tree, nullptr)) +
+                                reflected().cwiseProduct(a).cwiseAbs() + elastic(y).cwiseAbs() + load_sizes(t, y);
+  return closed_ ? Eigen::VectorXd(closed_->at(y).Z.cwiseAbs().transpose() * sizes) : sizes;
 }
 
-Eigen::VectorXd TangentDynamics::stiffness_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a,
+Eigen::VectorXd TangentDynamics::stiffness_in_play(double t, std::span<const double> y, const Eigen::VectorXd& moving,
                                                    const Eigen::VectorXd& terms, const Eigen::VectorXd& mass) const {
   /// Data are seldom typed more exactly than to 1e-9, a hundred times what derivatives are known to.
   constexpr double typed = 100;
+  const Eigen::VectorXd a = whole(y, moving);
   const Builder<double> build{*this, y, a, {}};
   const Recursion<double> tree(*model_, build.hinges(), build.bodies([](std::size_t) { return false; }));
   const Eigen::VectorXd sizes = analysis::sizes_of(tree, wrenches(t, y, tree, nullptr));
@@ -179,8 +184,9 @@ Eigen::VectorXd TangentDynamics::stiffness_in_play(double t, std::span<const dou
   return terms + squared * mass.cwiseAbs();
 }
 
-Eigen::VectorXd TangentDynamics::rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
+Eigen::VectorXd TangentDynamics::rates(double t, std::span<const double> y, const Eigen::VectorXd& moving) const {
   const Layout& layout = model_->layout();
+  const Eigen::VectorXd a = whole(y, moving);
   std::vector<double> y_dot(layout.size()), scratch(model_->load_scratch());
   std::copy_n(a.data(), a.size(), y_dot.begin() + static_cast<std::ptrdiff_t>(layout.positions));
   // Of states that are not finite the rates are not finite.
@@ -231,7 +237,7 @@ Eigen::VectorXd TangentDynamics::differentiate(double t, std::span<const double>
   return values + inertia.cwiseProduct(a) + elastic(y) - load_efforts(t, y);
 }
 
-Stiffness TangentDynamics::stiffness(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
+Stiffness TangentDynamics::open_stiffness(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
   Tangents result;
   result.by_position.resize(n, n);
@@ -244,14 +250,14 @@ Stiffness TangentDynamics::stiffness(double t, std::span<const double> y, const 
           std::move(result.rate_by_position), std::move(result.rate_by_state), std::move(result.in_play)};
 }
 
-Eigen::MatrixXd TangentDynamics::mass(double t, std::span<const double> y) const {
+Eigen::MatrixXd TangentDynamics::open_mass(double t, std::span<const double> y) const {
   const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
   Eigen::MatrixXd mass(n, n);
   differentiate(t, y, Eigen::VectorXd::Zero(n), 2 * model_->layout().speeds, mass, nullptr);
   return mass;
 }
 
-Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
+Tangents TangentDynamics::open_tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
   Eigen::MatrixXd all(n, 3 * n);
   std::vector<bool> differenced(model_->loads().size(), false);
@@ -266,7 +272,6 @@ Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Ei
     if (differenced[l]) result.differenced.push_back(model_->loads()[l].name);
   }
   add_loads(t, y, a, result);
-  result.in_play = stiffness_in_play(t, y, a, result.in_play, result.mass.diagonal());
   result.drift = drift(y);
   return result;
 }
@@ -291,6 +296,11 @@ FrameTangent TangentDynamics::frame(std::span<const double> y, int body, int fra
       result.deflection[i] = d[i].value();
       result.deflection_by_position.block(i, first, 1, count) = derivatives_of(d[i]).head(count).transpose();
     }
+  }
+  if (closed_) {
+    const Eigen::MatrixXd Z = closed_->at(y).Z;
+    result.by_position *= Z;
+    result.deflection_by_position *= Z;
   }
   return result;
 }

@@ -10,8 +10,11 @@
 
 #include "withy/core/deformation/rod_table.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
 
 namespace withy {
+
+class ClosedMotions;
 
 namespace analysis {
 template <class S>
@@ -40,6 +43,7 @@ struct Tangents {
   /// Loads whose derivatives are numerical: without BoundLoad::add_derivatives or those of their continuous part, or
   /// wrenches that depend on their frame's motion, with respect to that motion.
   std::vector<std::string> differenced;
+  bool loops = false;  ///< of closed loops; what these exert is differentiated by differences
 };
 
 /// The part of Tangents that equilibria need.
@@ -59,10 +63,10 @@ struct FrameTangent {
   Matrix3X deflection_by_position;       ///< 3 × speeds
 };
 
-/// A model in one formulation. Derivatives are exact to rounding: the recursive Newton–Euler algorithm in numbers that
-/// carry derivatives, an algorithm independent of sweeps and of ReferenceDynamics; the strict truncation, itself a
-/// derivative (theory (3)), takes them nested, and the symmetric one in series. Exception: loads and hinges of others
-/// that do not differentiate themselves. Const functions allocate.
+/// A model in one formulation. Of closed loops see keep_closed. Derivatives are exact to rounding: the recursive
+/// Newton–Euler algorithm in numbers that carry derivatives, an algorithm independent of sweeps and of
+/// ReferenceDynamics; the strict truncation, itself a derivative (theory (3)), takes them nested, and the symmetric one
+/// in series. Exception: loads and hinges of others that do not differentiate themselves. Const functions allocate.
 class TangentDynamics {
  public:
   /// `terms` are the formulation's.
@@ -70,6 +74,18 @@ class TangentDynamics {
   TangentDynamics(std::shared_ptr<const Model> model, Terms terms);
 
   [[nodiscard]] const Model& model() const { return *model_; }
+  /// From here on all of the functions below, where the model has loops, are of motions that keep these closed
+  /// (ClosedMotions): rows and columns of speeds that follow others are zero, those of the others are of all that moves
+  /// with them. Speeds and accelerations that are given are those of the others. What changes the shape of a loop is to
+  /// be at rest.
+  /// \param equations of the same model and formulation; of loops, ClosedLoops \param held one a speed
+  void keep_closed(std::shared_ptr<const EquationsOfMotion> equations, const State& state,
+                   const std::vector<bool>& held);
+  /// Speeds that follow others, one a speed; none before keep_closed.
+  [[nodiscard]] std::vector<bool> follows() const;
+  /// Speeds or accelerations with those of what follows, and efforts on all speeds as they act on the others.
+  [[nodiscard]] Eigen::MatrixXd whole(std::span<const double> y, const Eigen::MatrixXd& speeds) const;
+  [[nodiscard]] Eigen::MatrixXd on_motions(std::span<const double> y, const Eigen::MatrixXd& efforts) const;
   /// The accelerations of steady motion: those that prescribed motions have at t, all others zero.
   [[nodiscard]] Eigen::VectorXd steady_accelerations(double t) const;
   /// r at time t, y as in State, a one number a speed.
@@ -93,7 +109,8 @@ class TangentDynamics {
   [[nodiscard]] Stiffness stiffness(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   /// In the formulation's strain kinematics without truncation, as results show them.
   [[nodiscard]] FrameTangent frame(std::span<const double> y, int body, int frame) const;
-  /// Moves y by δ (a quaternion to first order, then scaled to unit length).
+  /// Moves y by δ (a quaternion to first order, then scaled to unit length). Where loops cannot be closed then, it is
+  /// not finite.
   void displace(std::span<double> y, const Eigen::VectorXd& delta) const;
 
  private:
@@ -133,11 +150,19 @@ class TangentDynamics {
   /// HingeNode::reflected_inertia, by speeds.
   [[nodiscard]] Eigen::VectorXd reflected() const;
   [[nodiscard]] Eigen::MatrixXd drift(std::span<const double> y) const;
+  /// Those of the tree, loops open, at accelerations of all speeds.
+  [[nodiscard]] Eigen::VectorXd open_residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
+  [[nodiscard]] Tangents open_tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
+  [[nodiscard]] Stiffness open_stiffness(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
+  [[nodiscard]] Eigen::MatrixXd open_mass(double t, std::span<const double> y) const;
+  /// Makes those of the tree those of motions that keep the loops closed.
+  void close(std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;
 
   std::shared_ptr<const Model> model_;
   std::vector<Terms> terms_;                           ///< of each body
   std::vector<const Slot*> slots_;                     ///< of each body's modes; null where it has none
   std::vector<std::shared_ptr<const RodTable>> rods_;  ///< of each body; null where its kinematics is an expansion
+  std::shared_ptr<const ClosedMotions> closed_;        ///< null of trees
   bool controlled_frames_ = false;                     ///< a load with a continuous part acts at a frame
   bool strict_ = false, symmetric_ = false;
   bool products_of_speeds_ = true;

@@ -66,6 +66,10 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, const Eigen
   const Layout& layout = model_->layout();
   const auto n = static_cast<Eigen::Index>(layout.speeds);
   Eigen::MatrixXd by_position = Eigen::MatrixXd::Zero(n, n), by_speed = by_position;
+  const auto displaced = [&](std::span<double> moved, Eigen::Index speed, double h) {
+    const Eigen::VectorXd by = h * Eigen::VectorXd::Unit(n, speed);
+    withy::displace(*model_, moved, {by.data(), layout.speeds});
+  };
   for (const LoadNode& node : model_->loads()) {
     const BoundLoad& load = *node.load;
     const auto positions = y.first(layout.positions), speeds = y.subspan(layout.positions, layout.speeds);
@@ -94,8 +98,7 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, const Eigen
           difference_step, greatest_moved(y, move));
     };
     for (Eigen::Index j = 0; j < n; ++j) {
-      by_position.col(j) +=
-          slope([&](std::span<double> moved, double h) { displace(moved, h * Eigen::VectorXd::Unit(n, j)); });
+      by_position.col(j) += slope([&](std::span<double> moved, double h) { displaced(moved, j, h); });
       by_speed.col(j) +=
           slope([&](std::span<double> moved, double h) { moved[layout.positions + static_cast<std::size_t>(j)] += h; });
     }
@@ -112,7 +115,8 @@ void TangentDynamics::add_continuous(double t, std::span<const double> y, const 
   std::vector<bool> differenced(model_->loads().size(), false);
   const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
   const auto move = [&](std::span<double> moved, std::size_t speed, double h) {
-    displace(moved, h * Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(speed)));
+    const Eigen::VectorXd by = h * Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(speed));
+    withy::displace(*model_, moved, {by.data(), model_->layout().speeds});
   };
   // The residual has efforts on its other side.
   const auto of_wrenches = [&](std::span<const double> seen) { return frame_load_efforts(t, y, seen); };

@@ -1,0 +1,161 @@
+#include "withy/core/tangents/closed_motions.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "withy/core/model/closing.hpp"
+#include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/tangents/displacements.hpp"
+
+namespace withy {
+namespace {
+
+/// Of its size, what is left of a row or a column beside the others where it is independent of them, as ClosedLoops has
+/// it; and what is left of a speed that closes loops well.
+constexpr double independent = 1e-6, closes_well = 0.1;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Directions in the space of the gaps that are closed already.
+class Closed {
+ public:
+  explicit Closed(Eigen::Index equations) : basis_(equations, 0) {}
+  /// Takes a column where more than this share of it is new.
+  bool take(Eigen::VectorXd column, double share) {
+    const double size = column.norm();
+    for (int twice = 0; twice < 2; ++twice) column -= basis_ * (basis_.transpose() * column).eval();
+    const double left = column.norm();
+    if (!(left > share * size)) return false;
+    basis_.conservativeResize(Eigen::NoChange, basis_.cols() + 1);
+    basis_.rightCols(1) = column / left;
+    return true;
+  }
+
+ private:
+  Eigen::MatrixXd basis_;
+};
+
+Eigen::MatrixXd transposed_inverse(const Eigen::MatrixXd& of_followers) {
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(of_followers.transpose());
+  return factors.pseudoInverse();
+}
+
+}  // namespace
+
+ClosedMotions::ClosedMotions(const Model& model, std::shared_ptr<const EquationsOfMotion> equations, const State& state,
+                             const std::vector<bool>& held)
+    : model_(model),
+      equations_(std::move(equations)),
+      loops_(dynamic_cast<const ClosedLoops&>(*equations_)),
+      length_(length_of_loops(model)),
+      in_loops_(speeds_in_loops(model)),
+      follows_(held.size(), false) {
+  choose(see(state.y).J, held);
+}
+
+void ClosedMotions::choose(const Eigen::MatrixXd& J, const std::vector<bool>& held) {
+  const Layout& layout = model_.layout();
+  const double greatest = J.colwise().norm().maxCoeff();
+  Closed closed(J.rows());
+  const auto take = [&](const std::vector<Slot>& slots, double share) {
+    for (auto slot = slots.rbegin(); slot != slots.rend(); ++slot)
+      for (std::size_t s = slot->speed + slot->speeds; s-- > slot->speed;) {
+        if (held[s] || !in_loops_[s] || follows_[s]) continue;
+        const auto column = J.col(static_cast<Eigen::Index>(s));
+        follows_[s] = column.norm() > independent * greatest && closed.take(column, share);
+      }
+  };
+  for (const double share : {closes_well, independent}) take(layout.hinges, share);
+  for (const double share : {closes_well, independent}) take(layout.bodies, share);
+  for (std::size_t s = 0; s < follows_.size(); ++s)
+    (follows_[s] ? followers_ : others_).push_back(static_cast<Eigen::Index>(s));
+}
+
+ClosedMotions::Seen ClosedMotions::see(std::span<const double> y) const {
+  const auto equations = static_cast<Eigen::Index>(loops_.closing_equations());
+  const auto speeds = static_cast<Eigen::Index>(model_.layout().speeds);
+  Eigen::VectorXd gaps(equations), rates(equations);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> J(equations, speeds);
+  const auto all = [](auto& m) { return std::span<double>(m.data(), static_cast<std::size_t>(m.size())); };
+  Work work = equations_->make_work();
+  loops_.see(y, all(gaps), all(rates), all(J), work);
+  // Of what carries loops it is rounding.
+  for (std::size_t s = 0; s < in_loops_.size(); ++s)
+    if (!in_loops_[s]) J.col(static_cast<Eigen::Index>(s)).setZero();
+  return {std::move(gaps), J};
+}
+
+ClosedMotions::At ClosedMotions::at(std::span<const double> y) const {
+  At at{see(y).J, {}};
+  const Eigen::Index n = at.J.cols();
+  at.Z = Eigen::MatrixXd::Identity(n, n);
+  if (followers_.empty()) return at;
+  at.Z(Eigen::all, followers_).setZero();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(at.J(Eigen::all, followers_));
+  if (!at.J.allFinite() || factors.rank() < static_cast<Eigen::Index>(followers_.size()))
+    at.Z.setConstant(nan);
+  else
+    at.Z(followers_, others_) = -factors.solve(at.J(Eigen::all, others_));
+  return at;
+}
+
+Eigen::VectorXd ClosedMotions::multipliers(const At& at, const Eigen::VectorXd& residual) const {
+  if (!at.J.allFinite()) return Eigen::VectorXd::Constant(at.J.rows(), nan);
+  return transposed_inverse(at.J(Eigen::all, followers_)) * residual(followers_);
+}
+
+ClosedMotions::Changes ClosedMotions::changes(std::span<const double> y, const At& at,
+                                              const Eigen::VectorXd& multipliers,
+                                              const Eigen::VectorXd& accelerations) const {
+  /// [rad], and in lengths of the loop: eighth powers of it are below rounding.
+  constexpr double far = 0.01;
+  const Eigen::Index n = at.J.cols();
+  Changes by{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  if (!at.Z.allFinite() || !multipliers.allFinite() || !accelerations.allFinite()) {
+    by.efforts.setConstant(nan);
+    return by;
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(at.J(Eigen::all, followers_));
+  for (const Eigen::Index i : others_) {
+    if (!in_loops_[static_cast<std::size_t>(i)]) continue;
+    const auto look = [&](double h) {
+      std::vector<double> moved(y.begin(), y.end());
+      const Eigen::VectorXd delta = h * at.Z.col(i);
+      displace(model_, moved, {delta.data(), static_cast<std::size_t>(n)});
+      const Eigen::MatrixXd J = see(moved).J;
+      Eigen::VectorXd both(n + J.rows());
+      both << J.transpose() * multipliers, J * accelerations;
+      return both;
+    };
+    const double step = far * std::min(1.0, length_) / at.Z.col(i).cwiseAbs().maxCoeff();
+    const Eigen::VectorXd slope = central_difference(look, step);
+    by.efforts.col(i) = slope.head(n);
+    if (!followers_.empty()) by.accelerations(followers_, i) = -factors.solve(slope.tail(at.J.rows()));
+  }
+  return by;
+}
+
+void ClosedMotions::close(std::span<double> y) const {
+  constexpr int most = 30;
+  const double rounding = 1e-15 * length_;
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most; ++i) {
+    const Seen now = see(y);
+    const double left = now.gaps.cwiseAbs().maxCoeff();
+    // Of redundant equations, and where nothing can follow, what is left is rounding already.
+    if (left <= rounding || (left <= 1e5 * rounding && !(left < 0.5 * before))) return;
+    if (!std::isfinite(left)) break;
+    before = left;
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(now.J(Eigen::all, followers_));
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(follows_.size()));
+    change(followers_) = -factors.solve(now.gaps);
+    displace(model_, y, {change.data(), follows_.size()});
+  }
+  std::fill(y.begin(), y.end(), nan);
+}
+
+}  // namespace withy
