@@ -27,8 +27,8 @@ class Configuration {
  public:
   /// Sampled loads that have not begun hold what they give at the state. Hinges that an integrator has left creeping
   /// about rest are at rest (without_creep).
-  /// \throws InputError where a load switches, there is no such hinge, or the shape of a closed loop changes; SceneError
-  /// where a load is wrong about its derivatives.
+  /// \throws InputError where a load switches, there is no such hinge, or the shape of a closed loop changes;
+  /// SceneError where a load is wrong about its derivatives.
   Configuration(const Prepared& prepared, State state, const Holding& holding);
 
   [[nodiscard]] const Prepared& prepared() const { return prepared_; }
