@@ -60,15 +60,16 @@ PivotedFactors ClosedEquations::factors(Work& work) const noexcept {
   return {rows_, L_.in(work).data(), order_.in(work).data(), left_.in(work).data(), rank_.in(work)[0]};
 }
 
-void ClosedEquations::find_rows(std::span<const double> y, std::span<double> rows, Work& work) const noexcept {
+void ClosedEquations::find_rows(std::span<const double> y, std::span<double> rows, Work& work,
+                                LoopPaths::Held held) const noexcept {
   std::byte* const memory = of_paths_.in(work);
-  paths_.gaps(y, gaps_.in(work), memory);
+  paths_.gaps(y, gaps_.in(work), memory, held);
   std::fill(rows.begin(), rows.end(), 0.0);
   const std::span<double> one = multipliers_.in(work);
   std::fill(one.begin(), one.end(), 0.0);
   for (std::size_t i = 0; i < rows_; ++i) {
     one[i] = 1;
-    paths_.add_efforts(one, rows.subspan(i * speeds_, speeds_), memory);
+    paths_.add_efforts(one, rows.subspan(i * speeds_, speeds_), memory, held);
     one[i] = 0;
   }
 }
@@ -228,6 +229,14 @@ void ClosedEquations::see(std::span<const double> y, std::span<double> gaps, std
   const std::span<const double> g = gaps_.in(work);
   std::copy(g.begin(), g.end(), gaps.begin());
   paths_.rates(rates, of_paths_.in(work));
+}
+
+void ClosedEquations::see_turns(std::span<const double> y, std::span<double> gaps, std::span<double> J,
+                                Work& work) const noexcept {
+  std::fill(J.begin(), J.end(), 0.0);
+  find_rows(y, J, work, LoopPaths::Held::turn);
+  const std::span<const double> g = gaps_.in(work);
+  std::copy(g.begin(), g.end(), gaps.begin());
 }
 
 bool ClosedEquations::right_way_round(std::span<const double> y, std::size_t index, Work& work) const noexcept {

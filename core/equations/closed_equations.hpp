@@ -34,6 +34,8 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   std::size_t closing_equations() const override { return rows_; }
   void see(std::span<const double> y, std::span<double> gaps, std::span<double> rates, std::span<double> J,
            Work& work) const noexcept override;
+  void see_turns(std::span<const double> y, std::span<double> gaps, std::span<double> J,
+                 Work& work) const noexcept override;
   bool right_way_round(std::span<const double> y, std::size_t index, Work& work) const noexcept override;
   Closing close(std::span<double> y, Work& work) const noexcept override;
   bool keeps_rank(std::span<const double> before, std::span<const double> after, const LoopRank& rank,
@@ -64,7 +66,8 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   /// Those that the last call of `factorize` has left.
   [[nodiscard]] PivotedFactors factors(Work& work) const noexcept;
   /// Goes to a state: gaps, and the rows of J.
-  void find_rows(std::span<const double> y, std::span<double> rows, Work& work) const noexcept;
+  void find_rows(std::span<const double> y, std::span<double> rows, Work& work,
+                 LoopPaths::Held held = LoopPaths::Held::equations) const noexcept;
   /// keeps_rank of the rows in `work`.
   bool keeps_rank_by_mass(std::size_t rank, Work& work) const noexcept;
   bool keeps_rank_by_columns(std::size_t rank, Work& work) const noexcept;

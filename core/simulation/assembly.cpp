@@ -1,7 +1,10 @@
 #include "withy/core/simulation/assembly.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,11 @@ namespace {
 using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Free = std::vector<Eigen::Index>;
 
+bool holds_all_directions(const LoopClosure& loop) {
+  const auto& all = loop.equations();
+  return std::count_if(all.begin(), all.end(), [](const ClosingEquation& e) { return e.of_directions; }) == 3;
+}
+
 /// A state on its way to closure.
 class Assembler {
  public:
@@ -27,6 +35,8 @@ class Assembler {
         gaps_(static_cast<Eigen::Index>(loops_.closing_equations())),
         rates_(gaps_.size()),
         J_(gaps_.size(), static_cast<Eigen::Index>(model.layout().speeds)) {
+    for (const LoopClosure* loop : loops_of(model))
+      holds_directions_ = holds_directions_ || holds_all_directions(*loop);
     look();
   }
 
@@ -36,27 +46,29 @@ class Assembler {
   [[nodiscard]] const Eigen::VectorXd& gap_rates() const { return rates_; }
   [[nodiscard]] bool closed() const { return gap() <= closed_gap; }
 
-  /// Moves the coordinates of free speeds; where they do not close the loops, the state stays.
+  /// A loop that was closed at another pose than its hinge's; nothing where none was.
+  [[nodiscard]] const std::optional<std::size_t>& turned_over() const { return turned_over_; }
+
+  /// Moves the coordinates of free speeds; where they do not close the loops, the state stays. Where the equations lead
+  /// to a pose that is none of the hinge's, or nowhere, the turns that are left are followed first.
   bool close_positions(const Free& free) {
-    if (closed()) return true;
+    if (is_closed_well()) return true;
     if (free.empty()) return false;
-    constexpr int most = 200;
     const State start = state_;
-    double best = gap();
-    for (int i = 0, idle = 0; i < most && idle < 30; ++i) {
-      Eigen::VectorXd change = smallest(free, gaps_);
-      constexpr double longest = 0.3;  // [rad, m]
-      const double most_moved = change.cwiseAbs().maxCoeff();
-      if (!std::isfinite(most_moved)) break;
-      if (most_moved > longest) change *= longest / most_moved;
-      move(change);
-      if (gap() <= finest_gap || (closed() && gap() >= 0.5 * best)) break;
-      idle = gap() < 0.9 * best ? 0 : idle + 1;
-      best = std::min(best, gap());
+    for (const bool by_turns : {false, true}) {
+      if (by_turns) {
+        if (!holds_directions_) break;
+        turns_ = true;
+        look();
+        follow(free);
+        turns_ = false;
+        look();
+      }
+      follow(free);
+      if (is_closed_well()) return true;
+      state_ = start;
+      look();
     }
-    if (closed()) return true;
-    state_ = start;
-    look();
     return false;
   }
   bool close_rates(const Free& free) {
@@ -79,11 +91,37 @@ class Assembler {
  private:
   static constexpr double closed_gap = 1e-10, finest_gap = 1e-15;  ///< [m]
 
+  [[nodiscard]] bool is_closed_well() {
+    if (!closed()) return false;
+    for (std::size_t i = 0; i < loops_of(model_).size(); ++i) {
+      if (loops_.right_way_round(state_.y, i, work_)) continue;
+      turned_over_ = i;
+      return false;
+    }
+    return true;
+  }
+  /// Newton's method for the gaps, until it comes no nearer.
+  void follow(const Free& free) {
+    constexpr int most = 200;
+    double best = gap();
+    for (int i = 0, idle = 0; i < most && idle < 30; ++i) {
+      Eigen::VectorXd change = smallest(free, gaps_);
+      constexpr double longest = 0.3;  // [rad, m]
+      const double most_moved = change.cwiseAbs().maxCoeff();
+      if (!std::isfinite(most_moved)) break;
+      if (most_moved > longest) change *= longest / most_moved;
+      move(change);
+      if (gap() <= finest_gap || (closed() && gap() >= 0.5 * best)) break;
+      idle = gap() < 0.9 * best ? 0 : idle + 1;
+      best = std::min(best, gap());
+    }
+  }
   void look() {
     J_.setZero();
-    loops_.see(state_.y, {gaps_.data(), static_cast<std::size_t>(gaps_.size())},
-               {rates_.data(), static_cast<std::size_t>(rates_.size())},
-               {J_.data(), static_cast<std::size_t>(J_.size())}, work_);
+    const std::span<double> gaps(gaps_.data(), static_cast<std::size_t>(gaps_.size()));
+    const std::span<double> J(J_.data(), static_cast<std::size_t>(J_.size()));
+    if (turns_) return loops_.see_turns(state_.y, gaps, J, work_);
+    loops_.see(state_.y, gaps, {rates_.data(), static_cast<std::size_t>(rates_.size())}, J, work_);
   }
   /// The change of free speeds with J change = −missing, or as near as they come to it, that is the smallest in M.
   [[nodiscard]] Eigen::VectorXd smallest(const Free& free, const Eigen::VectorXd& missing) const {
@@ -117,6 +155,9 @@ class Assembler {
   Work work_;
   Eigen::VectorXd gaps_, rates_;
   DenseMatrix J_;
+  bool holds_directions_ = false;  ///< a hinge of some loop holds all three
+  bool turns_ = false;             ///< gaps and rows are those of ClosedLoops::see_turns
+  std::optional<std::size_t> turned_over_;
 };
 
 /// Speeds that may change: of hinges, with `modes` those of bodies too; what is given and what motions drive does not.
@@ -195,21 +236,18 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
   const double gap = assembler.gap();
   if (!closes(model, given, kept, &GivenState::positions, gap,
               [&](const auto& free) { return assembler.close_positions(free); })) {
+    if (assembler.turned_over()) {
+      result.loop = *assembler.turned_over();
+      result.fault =
+          "the loop closes the wrong way round from the initial state, its hinge turned over by half or a third of a "
+          "turn; give a nearer `guess`";
+      return result;
+    }
     result.loop = farthest(model, assembler.gaps());
     result.fault = "the loop cannot be closed from the initial state: its frames are " + brief(gap) +
                    " m apart there (turns count with the length of the largest flexible body, or of what hinges and "
                    "constraints join), and what `initial` gives and "
                    "motions prescribe leaves no way; give fewer coordinates, or a nearer `guess`";
-    return result;
-  }
-  auto& loops = dynamic_cast<const ClosedLoops&>(equations);
-  Work work = equations.make_work();
-  for (std::size_t i = 0; i < loops_of(model).size(); ++i) {
-    if (loops.right_way_round(state.y, i, work)) continue;
-    result.loop = i;
-    result.fault =
-        "the loop closes the wrong way round from the initial state, its hinge turned over by half a turn; "
-        "give a nearer `guess`";
     return result;
   }
   const double rate = assembler.gap_rate();
