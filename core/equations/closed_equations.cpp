@@ -28,6 +28,7 @@ ClosedEquations::ClosedEquations(std::shared_ptr<const Model> model, Terms terms
       paths_(*model_, terms),
       angles_(*model_),
       in_loops_(speeds_in_loops(*model_)),
+      reaches_(reaches_of_speeds(*model_, paths_.length())),
       rows_(paths_.size()),
       speeds_(layout().speeds) {
   if (mass_ == nullptr || mass_->mass_factors_size() == 0)
@@ -36,6 +37,7 @@ ClosedEquations::ClosedEquations(std::shared_ptr<const Model> model, Terms terms
         "ruthless, symmetric or exact");
   for (std::size_t h = 0; h < layout().hinges.size(); ++h)
     if (model_->driven(h)) driven_.push_back(layout().hinges[h]);
+  for (const Slot& slot : driven_) std::fill_n(&reaches_[slot.speed], slot.speeds, 0.0);
   lay_out();
 }
 
@@ -71,6 +73,15 @@ void ClosedEquations::find_rows(std::span<const double> y, std::span<double> row
     one[i] = 1;
     paths_.add_efforts(one, rows.subspan(i * speeds_, speeds_), memory, held);
     one[i] = 0;
+  }
+  const double rounding = paths_.rounding(memory);
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const std::span<double> row = rows.subspan(i * speeds_, speeds_);
+    std::size_t k = 0;
+    while (k < speeds_ && (reaches_[k] == 0 || std::abs(row[k]) <= rounding * reaches_[k])) ++k;
+    if (k < speeds_) continue;
+    for (k = 0; k < speeds_; ++k)
+      if (reaches_[k] > 0) row[k] = 0;
   }
 }
 

@@ -65,7 +65,8 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   void lay_out();
   /// Those that the last call of `factorize` has left.
   [[nodiscard]] PivotedFactors factors(Work& work) const noexcept;
-  /// Goes to a state: gaps, and the rows of J.
+  /// Goes to a state: gaps, and the rows of J. A row that moves nothing but by rounding, as all do of a door's second
+  /// hinge on the axis of the first, is zero: among none but such rows rounding would count for rank.
   void find_rows(std::span<const double> y, std::span<double> rows, Work& work,
                  LoopPaths::Held held = LoopPaths::Held::equations) const noexcept;
   /// keeps_rank of the rows in `work`.
@@ -89,8 +90,9 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   AppliedLoads loads_;      ///< for sensors, and for what loads measure of accelerations
   LoopPaths paths_;
   HingeAngles angles_;
-  std::vector<bool> in_loops_;  ///< speeds
-  std::vector<Slot> driven_;    ///< hinges that motions drive
+  std::vector<bool> in_loops_;   ///< speeds
+  std::vector<double> reaches_;  ///< reaches_of_speeds; of speeds that motions prescribe zero
+  std::vector<Slot> driven_;     ///< hinges that motions drive
   std::size_t rows_ = 0, speeds_ = 0;
   // Work memory, behind the tree's.
   Region of_paths_, of_loads_;

@@ -84,6 +84,13 @@ void LoopPaths::gaps(std::span<const double> y, std::span<double> gaps, std::byt
   }
 }
 
+double LoopPaths::rounding(std::byte* work) const noexcept {
+  constexpr double of_lengths = 1e-13, of_places = 1e-15;
+  double farthest = 0;
+  for (const Loop& loop : loops_) farthest = std::max(farthest, moving(loop, work).M.position.norm());
+  return of_lengths + of_places * farthest / length_;
+}
+
 void LoopPaths::rates(std::span<double> rates, std::byte* work) const noexcept {
   double* g = rates.data();
   for (const Loop& loop : loops_) {

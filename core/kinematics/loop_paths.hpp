@@ -28,6 +28,9 @@ class LoopPaths {
   [[nodiscard]] std::size_t size() const { return size_; }
   /// ℓ [m], see length_of_loops.
   [[nodiscard]] double length() const { return length_; }
+  /// What rounding leaves of a row of J that is zero, over reaches_of_speeds, at the state that `gaps` has left in the
+  /// memory: arms are differences of places, which have fewer digits the farther they are from the world's origin.
+  [[nodiscard]] double rounding(std::byte* work) const noexcept;
   /// Bytes of memory that the functions below share, aligned to 64.
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
 
