@@ -181,6 +181,23 @@ TEST(ClosedLoops, InitialValuesStayOrAreRefusedWithTheDistance) {
               testing::HasSubstr("the initial speeds part its frames at"));
 }
 
+TEST(ClosedLoops, ALoadThatFollowsAReactionOfItsOwnInstantIsRefused) {
+  for (const char* reaction : {"constraint: loop", "hinge: pivot"}) {
+    for (const char* measured : {"k.fx", "twice"}) {
+      const std::string good = four_bar(rigid_coupler, "dopri5") + "outputs:\n  k: {type: reaction, " + reaction +
+                               "}\n  twice: {type: expression, value: 2 * k.fx}\n";
+      const auto with = [&](const std::string& more) {
+        return message(replaced(good, "  torque:",
+                                std::string("  servo: {type: pid, of: ") + measured + ", hinge: motor, integral: 1" +
+                                    more + "}\n  torque:"));
+      };
+      EXPECT_THAT(with(""), testing::HasSubstr(std::string("signal '") + measured + "' depends on efforts"))
+          << reaction;
+      EXPECT_EQ(with(", sample: 0.01"), "") << reaction;
+    }
+  }
+}
+
 TEST(ClosedLoops, AllFaultsOfConstraintsAreReportedWhereTheyStand) {
   const std::string good = four_bar(rigid_coupler, "dopri5");
   const std::string bad = replaced(good, "constraints:\n", R"(constraints:
