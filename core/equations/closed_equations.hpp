@@ -78,6 +78,8 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   Evaluation factorize(std::span<const double> y, Work& work) const noexcept;
   /// change += Z λ for λ of J Z λ = −b, which is left in `multipliers_`.
   void answer(std::span<const double> b, std::span<double> change, Work& work) const noexcept;
+  /// Of all multipliers that give the same accelerations as those in `multipliers_`, by the factors, the least.
+  void find_least(Work& work) const noexcept;
   void close_positions(std::span<double> y, Closing& closing, Work& work) const noexcept;
   void close_speeds(std::span<double> y, Work& work) const noexcept;
   /// Positions by the change of speeds in `change_`, as if it held for a unit of time.

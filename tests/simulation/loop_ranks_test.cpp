@@ -102,5 +102,48 @@ TEST(LoopRanks, ADrivenDoorOnAFreeCraftMayHaveASecondHinge) {
   for (const double value : read_sensors(made, summary.final)) EXPECT_LT(std::abs(value), 1e4);
 }
 
+/// A parallelogram whose cranks both have motions that agree: of the two equations in its plane one is needed.
+std::string driven_twice(const std::string& motions, const std::string& turned) {
+  std::string text = four_bar(rigid_coupler, "{name: dopri5, rtol: 1e-9, atol: 1e-11}");
+  text = replaced(text, "frames: {pin: {position: [0.8, 0, 0]}}", "frames: {pin: {position: [0.3, 0, 0]}}");
+  text = replaced(text, "offset: {position: [0.9, 0, 0]}", "offset: {position: [1.0, 0, 0]}");
+  text = replaced(text, "b: rocker.pin}",
+                  "b: rocker.pin, offset: {orientation: {axis: [0, 0, 1], angle: " + turned + "}}}");
+  text = text.substr(0, text.find("loads:"));
+  return text + "motions:\n" + motions + R"(outputs:
+  drive: {type: effort, hinge: motor}
+  base: {type: reaction, hinge: motor}
+  second_drive: {type: effort, hinge: pivot}
+  second_base: {type: reaction, hinge: pivot}
+initial: {guess: {hinges: {elbow: {position: [-1.2]}}}}
+)";
+}
+
+// How a constraint's frame is turned about its axis changes nothing, and what drives a hinge is what the hinge bears.
+TEST(LoopRanks, EffortsOfMotionsThatShareALoadAreThoseOfTheLeastMultipliers) {
+  const std::string turn =
+      "  one: {hinge: motor, type: constant-rate, rate: 1, from: 1.2}\n"
+      "  other: {hinge: pivot, type: constant-rate, rate: 1, from: 1.2}\n";
+  const std::string sway =
+      "  one: {hinge: motor, type: expression, value: 1.2 + 0.4 * sin(6 * t)}\n"
+      "  other: {hinge: pivot, type: expression, value: 1.2 + 0.4 * sin(6 * t)}\n";
+  for (const std::string& motions : {turn, sway}) {
+    std::vector<double> straight;
+    for (const char* turned : {"0", "0.5", "-0.8"}) {
+      SCOPED_TRACE(motions + turned);
+      const Made made(driven_twice(motions, turned));
+      const RunSummary summary = run(made, 0.5);
+      ASSERT_EQ(summary.status, RunStatus::completed) << summary.message;
+      const std::vector<double> values = read_sensors(made, summary.final);
+      EXPECT_NEAR(values[0], values[6], 1e-8 * (1 + std::abs(values[0])));
+      EXPECT_NEAR(values[7], values[13], 1e-8 * (1 + std::abs(values[7])));
+      EXPECT_GT(std::abs(values[0]), 1e-2);
+      if (straight.empty()) straight = values;
+      for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(values[i], straight[i], 1e-6) << i;
+      EXPECT_LT(summary.energy_drift, 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace withy::test
