@@ -7,6 +7,7 @@
 
 #include "four_bar.hpp"
 #include "withy/core/simulation/changing_equations.hpp"
+#include "withy/core/simulation/end_notes.hpp"
 
 namespace withy::test {
 namespace {
@@ -196,6 +197,17 @@ TEST(ClosedLoops, ALoadThatFollowsAReactionOfItsOwnInstantIsRefused) {
       EXPECT_EQ(with(", sample: 0.01"), "") << reaction;
     }
   }
+}
+
+TEST(ClosedLoops, ANoteOnRejectedStepsNamesWhatMayBeThere) {
+  const std::string closing = "closing the loops after long steps sets stiff modes in motion";
+  const auto note = [](const std::string& scene) { return note_on_jumps(*Made(scene).scene.model, {1.0}); };
+  const std::string loaded = four_bar(beam_coupler, "radau"), rigid = four_bar(rigid_coupler, "radau");
+  EXPECT_THAT(note(loaded), testing::AllOf(testing::HasSubstr("a load jumps"), testing::HasSubstr(closing)));
+  EXPECT_THAT(note(rigid),
+              testing::AllOf(testing::HasSubstr("a load jumps"), testing::Not(testing::HasSubstr(closing))));
+  const std::string torque = "loads:\n  torque: {type: hinge-effort, hinge: motor, law: constant, value: 1.5}\n";
+  EXPECT_THAT(note(replaced(rigid, torque, "")), testing::HasSubstr("what moves there is fast beside the rest."));
 }
 
 TEST(ClosedLoops, AllFaultsOfConstraintsAreReportedWhereTheyStand) {
