@@ -208,15 +208,15 @@ std::vector<bool> either(std::vector<bool> a, const std::vector<bool>& b) {
 }
 
 /// Whether `close` closes the loops, called with the speeds that may change. What is given stays: first with what is
-/// kept, then by itself, then with modes free to move. A gap that is next to nothing beside `size`, of the loops or of
-/// how fast they move, is closed by all.
+/// kept, then by itself, then with modes free to move. A gap [m, m/s] that is next to nothing, also beside `size`, of
+/// the loops or of how fast they move, is closed by all.
 template <class Close>
 bool closes(const Model& model, const GivenState& given, const GivenState* kept, std::vector<bool> GivenState::*part,
             double gap, double size, Close&& close) {
   constexpr double near_enough = 1e-3;
   return (kept != nullptr && close(free_speeds(model, either(given.*part, kept->*part), false))) ||
          close(free_speeds(model, given.*part, false)) || close(free_speeds(model, given.*part, true)) ||
-         (gap <= near_enough * size &&
+         (gap <= near_enough * std::min(size, 1.0) &&
           close(free_speeds(model, std::vector<bool>(model.layout().speeds, false), true)));
 }
 

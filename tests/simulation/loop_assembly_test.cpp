@@ -150,7 +150,7 @@ initial: {hinges: {motor: {position: [)" +
 }
 
 // Given values that are rounded are moved, others are not, whatever the size: neither by degrees in small mechanisms.
-TEST(LoopAssembly, GivenCoordinatesMoveByAThousandthOfTheSizeAtMost) {
+TEST(LoopAssembly, GivenCoordinatesMoveForGapsOfAThousandthOfTheSizeAtMost) {
   const double motor = M_PI / 2;
   const Linkage::Place place = Linkage::place(motor);
   const double elbow = place.coupler - motor;
@@ -159,6 +159,7 @@ TEST(LoopAssembly, GivenCoordinatesMoveByAThousandthOfTheSizeAtMost) {
     EXPECT_THAT(refusal(given_linkage(size, motor, -1.05, false, 1.7)), testing::HasSubstr("cannot be closed"));
     EXPECT_THAT(refusal(given_linkage(size, motor, elbow, true, place.rocker + 5e-3)),
                 testing::HasSubstr("cannot be closed"));
+    if (size > 1) continue;  // 1 mm is the most in any case
     const Made made(given_linkage(size, motor, elbow, true, place.rocker + 3e-4));
     const Layout& layout = made.scene.model->layout();
     EXPECT_NEAR(made.scene.initial.y[layout.hinge("motor")->position], motor, 2e-3);
