@@ -28,6 +28,7 @@ ClosedEquations::ClosedEquations(std::shared_ptr<const Model> model, Terms terms
       paths_(*model_, terms),
       angles_(*model_),
       in_loops_(speeds_in_loops(*model_)),
+      reaches_(reaches_of_speeds(*model_, paths_.length())),
       rows_(paths_.size()),
       speeds_(layout().speeds) {
   if (mass_ == nullptr || mass_->mass_factors_size() == 0)
@@ -36,6 +37,7 @@ ClosedEquations::ClosedEquations(std::shared_ptr<const Model> model, Terms terms
         "ruthless, symmetric or exact");
   for (std::size_t h = 0; h < layout().hinges.size(); ++h)
     if (model_->driven(h)) driven_.push_back(layout().hinges[h]);
+  for (const Slot& slot : driven_) std::fill_n(&reaches_[slot.speed], slot.speeds, 0.0);
   lay_out();
 }
 
@@ -60,16 +62,26 @@ PivotedFactors ClosedEquations::factors(Work& work) const noexcept {
   return {rows_, L_.in(work).data(), order_.in(work).data(), left_.in(work).data(), rank_.in(work)[0]};
 }
 
-void ClosedEquations::find_rows(std::span<const double> y, std::span<double> rows, Work& work) const noexcept {
+void ClosedEquations::find_rows(std::span<const double> y, std::span<double> rows, Work& work,
+                                LoopPaths::Held held) const noexcept {
   std::byte* const memory = of_paths_.in(work);
-  paths_.gaps(y, gaps_.in(work), memory);
+  paths_.gaps(y, gaps_.in(work), memory, held);
   std::fill(rows.begin(), rows.end(), 0.0);
   const std::span<double> one = multipliers_.in(work);
   std::fill(one.begin(), one.end(), 0.0);
   for (std::size_t i = 0; i < rows_; ++i) {
     one[i] = 1;
-    paths_.add_efforts(one, rows.subspan(i * speeds_, speeds_), memory);
+    paths_.add_efforts(one, rows.subspan(i * speeds_, speeds_), memory, held);
     one[i] = 0;
+  }
+  const double rounding = paths_.rounding(memory);
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const std::span<double> row = rows.subspan(i * speeds_, speeds_);
+    std::size_t k = 0;
+    while (k < speeds_ && (reaches_[k] == 0 || std::abs(row[k]) <= rounding * reaches_[k])) ++k;
+    if (k < speeds_) continue;
+    for (k = 0; k < speeds_; ++k)
+      if (reaches_[k] > 0) row[k] = 0;
   }
 }
 
@@ -121,6 +133,8 @@ Evaluation ClosedEquations::derivatives(double t, std::span<const double> y, std
   // What loads measure of accelerations is that of the closed loops.
   if (layout().continuous > 0 && !loads_.rates(t, y, y_dot, of_loads_.in(work)))
     return {Evaluation::Outcome::nonfinite, -1};
+  // Other multipliers give the same accelerations, and other efforts of motions than reactions tell.
+  if (!driven_.empty() && rank_.in(work)[0] < rows_) find_least(work);
   const std::span<const double> lambda = multipliers_.in(work);
   const std::span<double> on_motions = on_motions_.in(work);
   for (const Slot& slot : driven_) {
@@ -230,33 +244,54 @@ void ClosedEquations::see(std::span<const double> y, std::span<double> gaps, std
   paths_.rates(rates, of_paths_.in(work));
 }
 
+void ClosedEquations::see_turns(std::span<const double> y, std::span<double> gaps, std::span<double> J,
+                                Work& work) const noexcept {
+  std::fill(J.begin(), J.end(), 0.0);
+  find_rows(y, J, work, LoopPaths::Held::turn);
+  const std::span<const double> g = gaps_.in(work);
+  std::copy(g.begin(), g.end(), gaps.begin());
+}
+
 bool ClosedEquations::right_way_round(std::span<const double> y, std::size_t index, Work& work) const noexcept {
   paths_.gaps(y, gaps_.in(work), of_paths_.in(work));
   return paths_.right_way_round(index, of_paths_.in(work));
 }
 
-// Of all multipliers that give these accelerations the least: λ ← L (LᵀL)⁻¹ Lᵀ λ.
+// Rows beyond the rank are sums of those within, J₂ = W J₁ in free speeds, so that λ may change along the rows of
+// N = [−W, 1]: λ ← λ − Nᵀ (N Nᵀ)⁻¹ N λ.
+void ClosedEquations::find_least(Work& work) const noexcept {
+  const PivotedFactors f = factors(work);
+  const std::size_t m = rows_, r = f.rank, rest = m - r;
+  const std::span<double> lambda = multipliers_.in(work), c = rates_.in(work);
+  const std::span<double> W = other_A_.in(work).first(rest * r), G = other_A_.in(work).subspan(rest * r, rest * rest);
+  for (std::size_t i = 0; i < rest; ++i) {
+    double* const w = W.data() + i * r;
+    c[i] = lambda[f.order[r + i]];
+    for (std::size_t k = r; k-- > 0;) {
+      w[k] = f.L[(r + i) * m + k];
+      for (std::size_t j = k + 1; j < r; ++j) w[k] -= f.L[j * m + k] * w[j];
+      w[k] /= f.L[k * m + k];
+      c[i] -= w[k] * lambda[f.order[k]];
+    }
+    for (std::size_t j = 0; j <= i; ++j)
+      G[i * rest + j] = G[j * rest + i] = row_product(w, W.data() + j * r, r) + (i == j ? 1 : 0);
+  }
+  PivotedFactors inner{rest, other_L_.in(work).data(), other_order_.in(work).data(), left_.in(work).data()};
+  inner.factorize(G.data(), 0);
+  inner.solve(c.data(), c.data());
+  for (std::size_t i = 0; i < rest; ++i) {
+    lambda[f.order[r + i]] -= c[i];
+    for (std::size_t k = 0; k < r; ++k) lambda[f.order[k]] += c[i] * W[i * r + k];
+  }
+}
+
 void ClosedEquations::multipliers(double t, std::span<const double> y, std::span<double> multipliers,
                                   Work& work) const noexcept {
   std::fill(multipliers.begin(), multipliers.end(), 0.0);
   if (!derivatives(t, y, slopes_.in(work), work).ok()) return;
-  const PivotedFactors f = factors(work);
-  const std::size_t m = rows_, r = f.rank;
-  const std::span<double> lambda = multipliers_.in(work), G = other_A_.in(work), b = rates_.in(work);
-  for (std::size_t i = 0; i < r; ++i) {
-    b[i] = 0;
-    for (std::size_t k = i; k < m; ++k) b[i] += f.L[k * m + i] * lambda[f.order[k]];
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = 0;
-      for (std::size_t k = i; k < m; ++k) sum += f.L[k * m + i] * f.L[k * m + j];
-      G[i * r + j] = G[j * r + i] = sum;
-    }
-  }
-  PivotedFactors inner{r, other_L_.in(work).data(), other_order_.in(work).data(), left_.in(work).data()};
-  inner.factorize(G.data(), 0);
-  inner.solve(b.data(), b.data());
-  for (std::size_t k = 0; k < m; ++k)
-    for (std::size_t i = 0; i < std::min(k + 1, r); ++i) multipliers[f.order[k]] += f.L[k * m + i] * b[i];
+  find_least(work);
+  const std::span<const double> lambda = multipliers_.in(work);
+  std::copy(lambda.begin(), lambda.end(), multipliers.begin());
 }
 
 Wrench ClosedEquations::reaction(std::size_t index, std::span<const double> multipliers, Work& work) const noexcept {

@@ -34,6 +34,8 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   std::size_t closing_equations() const override { return rows_; }
   void see(std::span<const double> y, std::span<double> gaps, std::span<double> rates, std::span<double> J,
            Work& work) const noexcept override;
+  void see_turns(std::span<const double> y, std::span<double> gaps, std::span<double> J,
+                 Work& work) const noexcept override;
   bool right_way_round(std::span<const double> y, std::size_t index, Work& work) const noexcept override;
   Closing close(std::span<double> y, Work& work) const noexcept override;
   bool keeps_rank(std::span<const double> before, std::span<const double> after, const LoopRank& rank,
@@ -63,8 +65,10 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   void lay_out();
   /// Those that the last call of `factorize` has left.
   [[nodiscard]] PivotedFactors factors(Work& work) const noexcept;
-  /// Goes to a state: gaps, and the rows of J.
-  void find_rows(std::span<const double> y, std::span<double> rows, Work& work) const noexcept;
+  /// Goes to a state: gaps, and the rows of J. A row that moves nothing but by rounding, as all do of a door's second
+  /// hinge on the axis of the first, is zero: among none but such rows rounding would count for rank.
+  void find_rows(std::span<const double> y, std::span<double> rows, Work& work,
+                 LoopPaths::Held held = LoopPaths::Held::equations) const noexcept;
   /// keeps_rank of the rows in `work`.
   bool keeps_rank_by_mass(std::size_t rank, Work& work) const noexcept;
   bool keeps_rank_by_columns(std::size_t rank, Work& work) const noexcept;
@@ -74,6 +78,8 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   Evaluation factorize(std::span<const double> y, Work& work) const noexcept;
   /// change += Z λ for λ of J Z λ = −b, which is left in `multipliers_`.
   void answer(std::span<const double> b, std::span<double> change, Work& work) const noexcept;
+  /// Of all multipliers that give the same accelerations as those in `multipliers_`, by the factors, the least.
+  void find_least(Work& work) const noexcept;
   void close_positions(std::span<double> y, Closing& closing, Work& work) const noexcept;
   void close_speeds(std::span<double> y, Work& work) const noexcept;
   /// Positions by the change of speeds in `change_`, as if it held for a unit of time.
@@ -86,8 +92,9 @@ class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
   AppliedLoads loads_;      ///< for sensors, and for what loads measure of accelerations
   LoopPaths paths_;
   HingeAngles angles_;
-  std::vector<bool> in_loops_;  ///< speeds
-  std::vector<Slot> driven_;    ///< hinges that motions drive
+  std::vector<bool> in_loops_;   ///< speeds
+  std::vector<double> reaches_;  ///< reaches_of_speeds; of speeds that motions prescribe zero
+  std::vector<Slot> driven_;     ///< hinges that motions drive
   std::size_t rows_ = 0, speeds_ = 0;
   // Work memory, behind the tree's.
   Region of_paths_, of_loads_;

@@ -1,5 +1,8 @@
 #include "withy/core/kinematics/loop_paths.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+
 #include "withy/core/sweep/node.hpp"
 
 namespace withy {
@@ -21,7 +24,9 @@ LoopPaths::LoopPaths(const Model& model, Terms terms)
   const auto end = [&](const FrameIndex& frame, const Pose& pose) { return End{frame.body < 0 ? -1 : next++, pose}; };
   for (const LoopClosure* c : loops_of(model)) {
     const End a = end(c->a(), c->offset()), b = end(c->b(), Pose{});
-    loops_.push_back({a, b, c});
+    const auto directions = std::count_if(c->equations().begin(), c->equations().end(),
+                                          [](const ClosingEquation& e) { return e.of_directions; });
+    loops_.push_back({a, b, c, static_cast<std::size_t>(directions)});
     size_ += c->equations().size();
   }
   sweep::WorkLayout memory;
@@ -55,7 +60,7 @@ FrameAcceleration LoopPaths::accelerated(const End& end, const FrameMotion& at, 
   return A;
 }
 
-void LoopPaths::gaps(std::span<const double> y, std::span<double> gaps, std::byte* work) const noexcept {
+void LoopPaths::gaps(std::span<const double> y, std::span<double> gaps, std::byte* work, Held held) const noexcept {
   const Layout& layout = model_.layout();
   paths_.motions(y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
                  {sweep::at<FrameMotion>(work, motions_offset_), frames_.size()}, work + paths_offset_);
@@ -64,9 +69,26 @@ void LoopPaths::gaps(std::span<const double> y, std::span<double> gaps, std::byt
     const auto [F, M] = moving(loop, work);
     const Vector3 r = F.R.transpose() * (M.position - F.position);
     const Matrix3 R = F.R.transpose() * M.R;
-    for (const ClosingEquation& e : loop.node->equations())
-      *g++ = e.of_directions ? length_ * (e.a.dot(R * e.b) - e.value) : e.a.dot(r) - e.value;
+    const bool turn = held == Held::turn && loop.directions == 3;
+    Vector3 theta = Vector3::Zero();
+    if (turn) {
+      const Eigen::AngleAxisd turned(R);
+      theta = turned.angle() * turned.axis();
+    }
+    for (const ClosingEquation& e : loop.node->equations()) {
+      if (e.of_directions && turn)
+        *g++ = length_ * e.b.cross(e.a).dot(theta);
+      else
+        *g++ = e.of_directions ? length_ * (e.a.dot(R * e.b) - e.value) : e.a.dot(r) - e.value;
+    }
   }
+}
+
+double LoopPaths::rounding(std::byte* work) const noexcept {
+  constexpr double of_lengths = 1e-13, of_places = 1e-15;
+  double farthest = 0;
+  for (const Loop& loop : loops_) farthest = std::max(farthest, moving(loop, work).M.position.norm());
+  return of_lengths + of_places * farthest / length_;
 }
 
 void LoopPaths::rates(std::span<double> rates, std::byte* work) const noexcept {
@@ -104,15 +126,17 @@ void LoopPaths::biases(std::span<double> biases, std::byte* work) const noexcept
   }
 }
 
-Wrench LoopPaths::on_b(std::size_t index, std::span<const double> multipliers, std::byte* work) const noexcept {
+Wrench LoopPaths::on_b(std::size_t index, std::span<const double> multipliers, std::byte* work,
+                       Held held) const noexcept {
   std::size_t first = 0;
   for (std::size_t l = 0; l < index; ++l) first += loops_[l].node->equations().size();
   const auto [F, M] = moving(loops_[index], work);
+  const Matrix3& R_b = held == Held::turn && loops_[index].directions == 3 ? F.R : M.R;
   Wrench on_b;
   for (const ClosingEquation& e : loops_[index].node->equations()) {
     const Vector3 d = F.R * e.a * multipliers[first++];
     if (e.of_directions) {
-      on_b.moment += length_ * (M.R * e.b).cross(d);
+      on_b.moment += length_ * (R_b * e.b).cross(d);
     } else {
       on_b.force += d;
     }
@@ -125,21 +149,21 @@ Matrix3 LoopPaths::axes(std::size_t index, std::byte* work) const noexcept { ret
 bool LoopPaths::right_way_round(std::size_t index, std::byte* work) const noexcept {
   const auto [F, M] = moving(loops_[index], work);
   const Matrix3 R = F.R.transpose() * M.R;
-  std::size_t directions = 0;
-  for (const ClosingEquation& e : loops_[index].node->equations()) directions += e.of_directions ? 1 : 0;
-  // Two directions hold the axis b, three the whole frame; one has no opposite.
+  const std::size_t directions = loops_[index].directions;
+  // Two directions hold the axis b, three the whole frame; one has no opposite. What solves the equations of three
+  // takes each axis a to ± a, as half turns do, or to another one, as turns by a third of a circle about x + y + z.
   for (const ClosingEquation& e : loops_[index].node->equations()) {
     if (e.of_directions && directions == 2 && e.b.dot(R * e.b) < 0) return false;
-    if (e.of_directions && directions == 3 && e.a.dot(R * e.a) < 0) return false;
+    if (e.of_directions && directions == 3 && e.a.dot(R * e.a) < 0.5) return false;
   }
   return true;
 }
 
-void LoopPaths::wrenches(std::span<const double> multipliers, std::span<Wrench> wrenches,
-                         std::byte* work) const noexcept {
+void LoopPaths::wrenches(std::span<const double> multipliers, std::span<Wrench> wrenches, std::byte* work,
+                         Held held) const noexcept {
   const auto* motions = sweep::at<FrameMotion>(work, motions_offset_);
   for (std::size_t l = 0; l < loops_.size(); ++l) {
-    const Wrench on = on_b(l, multipliers, work);
+    const Wrench on = on_b(l, multipliers, work, held);
     const Vector3 at = moving(loops_[l], work).M.position;
     const auto apply = [&](const End& end, double sign) {
       if (end.frame < 0) return;
@@ -151,10 +175,10 @@ void LoopPaths::wrenches(std::span<const double> multipliers, std::span<Wrench> 
   }
 }
 
-void LoopPaths::add_efforts(std::span<const double> multipliers, std::span<double> efforts,
-                            std::byte* work) const noexcept {
+void LoopPaths::add_efforts(std::span<const double> multipliers, std::span<double> efforts, std::byte* work,
+                            Held held) const noexcept {
   const std::span<Wrench> all(sweep::at<Wrench>(work, wrenches_offset_), frames_.size());
-  wrenches(multipliers, all, work);
+  wrenches(multipliers, all, work, held);
   paths_.add_efforts(all, efforts, work + paths_offset_);
 }
 

@@ -17,30 +17,42 @@ namespace withy {
 ///   of directions  ġ = ℓ (ω_M − ω_F) · (f × d)                  and the moment ℓ f × d on b, its opposite on a.
 class LoopPaths {
  public:
+  /// What stands for the gaps of a hinge that holds all three directions.
+  enum class Held {
+    equations,  ///< g as above, which some turns by half and by a third of a circle solve too
+    turn  ///< ℓ (b × a) · θ, θ the rotation vector of R_FM in F, and ω_FM for its rate: equal near the hinge's pose
+  };
   /// `terms` as in FramePaths. The model must outlive the paths.
   LoopPaths(const Model& model, Terms terms);
   /// Of equations, in all loops.
   [[nodiscard]] std::size_t size() const { return size_; }
   /// ℓ [m], see length_of_loops.
   [[nodiscard]] double length() const { return length_; }
+  /// What rounding leaves of a row of J that is zero, over reaches_of_speeds, at the state that `gaps` has left in the
+  /// memory: arms are differences of places, which have fewer digits the farther they are from the world's origin.
+  [[nodiscard]] double rounding(std::byte* work) const noexcept;
   /// Bytes of memory that the functions below share, aligned to 64.
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
 
   /// Goes to a state, y as in State, and sets g.
-  void gaps(std::span<const double> y, std::span<double> gaps, std::byte* work) const noexcept;
+  void gaps(std::span<const double> y, std::span<double> gaps, std::byte* work,
+            Held held = Held::equations) const noexcept;
   /// At the state that `gaps` has left in the memory: J u, and J̇ u.
   void rates(std::span<double> rates, std::byte* work) const noexcept;
   void biases(std::span<double> biases, std::byte* work) const noexcept;
   /// Frames of bodies that loops act on, loop after loop.
   [[nodiscard]] std::span<const FrameIndex> frames() const { return frames_; }
   /// The wrench of multipliers λ at each: about its origin, world axes.
-  void wrenches(std::span<const double> multipliers, std::span<Wrench> wrenches, std::byte* work) const noexcept;
+  void wrenches(std::span<const double> multipliers, std::span<Wrench> wrenches, std::byte* work,
+                Held held = Held::equations) const noexcept;
   /// Adds Jᵀ λ to the efforts.
-  void add_efforts(std::span<const double> multipliers, std::span<double> efforts, std::byte* work) const noexcept;
+  void add_efforts(std::span<const double> multipliers, std::span<double> efforts, std::byte* work,
+                   Held held = Held::equations) const noexcept;
   /// What loop `index` exerts on the body of b: about the origin of M, world axes; and F's axes as columns.
-  [[nodiscard]] Wrench on_b(std::size_t index, std::span<const double> multipliers, std::byte* work) const noexcept;
+  [[nodiscard]] Wrench on_b(std::size_t index, std::span<const double> multipliers, std::byte* work,
+                            Held held = Held::equations) const noexcept;
   [[nodiscard]] Matrix3 axes(std::size_t index, std::byte* work) const noexcept;
-  /// Whether every hinge is at the pose its equations stand for, not at the opposite one that solves them too.
+  /// Whether a hinge is at the pose its equations stand for, not turned over to another one that solves them too.
   [[nodiscard]] bool right_way_round(std::size_t index, std::byte* work) const noexcept;
 
  private:
@@ -52,6 +64,7 @@ class LoopPaths {
   struct Loop {
     End a, b;
     const LoopClosure* node;
+    std::size_t directions;  ///< equations of directions
   };
   struct Moving {
     FrameMotion F, M;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/signal_source.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/sensed_fields.hpp"
 
 namespace withy {
@@ -19,7 +20,7 @@ constexpr std::size_t doubles_of_line = 8;  // 64 bytes, to which the work of pa
 
 /// A state of which positions and speeds are known, and accelerations where the view has them. What else is asked for
 /// is a given number.
-class Signals::Seen final : public SensedState, public SensedFields {
+class Signals::Seen final : public SensedState, public SensedLoops, public SensedFields {
  public:
   Seen(const Signals& signals, const LoadView& view, Unknown unknown, std::vector<FrameIndex>* asked)
       : signals_(signals), view_(view), unknown_(unknown), unavailable_(unknown.effort), asked_(asked) {
@@ -61,6 +62,7 @@ class Signals::Seen final : public SensedState, public SensedFields {
   Wrench reaction(int /*hinge*/) noexcept override {
     return {Vector3::Constant(unavailable_), Vector3::Constant(unavailable_)};
   }
+  Wrench closing_reaction(std::size_t /*loop*/) noexcept override { return reaction(0); }
   SectionLoad section(std::size_t /*index*/) noexcept override {
     const Vector3 none = Vector3::Constant(unavailable_);
     return {{none, none}, none, none};

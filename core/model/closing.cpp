@@ -63,6 +63,35 @@ void add_positions(const std::vector<Vector3>& slides, std::vector<ClosingEquati
   }
 }
 
+/// reaches_of_speeds of a hinge, of which `motion` is that at its reference.
+void reaches_of_hinge(const HingeMotion& motion, double length, double* reaches) {
+  for (Eigen::Index i = 0; i < motion.H.cols(); ++i)
+    reaches[i] = length * motion.H.col(i).head<3>().norm() + motion.H.col(i).tail<3>().norm();
+}
+
+/// reaches_of_speeds of a body's modes.
+void reaches_of_modes(const BodyNode& body, double length, double* reaches) {
+  const auto look = [&](const PointExpansion& at, bool turns) {
+    for (Eigen::Index i = 0; i < at.phi.cols(); ++i)
+      reaches[i] = std::max(reaches[i], at.phi.col(i).norm() + (turns ? length * at.psi.col(i).norm() : 0));
+  };
+  const ModalShape& shape = body.body->shape();
+  for (const Particle& p : shape.particles) look(p.at, false);
+  for (const Section& s : shape.sections) look(s.at, true);
+  for (const Frame& f : body.frames) look(f.section, true);
+}
+
+/// The motion of a hinge that stands at its reference.
+HingeMotion at_reference(const Hinge& hinge) {
+  std::vector<double> x(hinge.coordinates());
+  const std::vector<double> rates(hinge.speeds(), 0.0);
+  hinge.reference(x);
+  HingeMotion motion;
+  motion.H.resize(6, static_cast<Eigen::Index>(hinge.speeds()));
+  hinge.motion(x, rates, motion);
+  return motion;
+}
+
 /// Whether a body, −1 being the world, is `carrier` or carried by it.
 bool carries(const Model& model, std::size_t carrier, int body) {
   while (body >= 0 && static_cast<std::size_t>(body) != carrier)
@@ -76,9 +105,7 @@ std::optional<std::vector<ClosingEquation>> closing_equations(const Hinge& hinge
   constexpr double rounding = 1e-12;
   std::vector<double> x(hinge.coordinates()), rates(hinge.speeds(), 0.0), x_dot(hinge.coordinates());
   hinge.reference(x);
-  HingeMotion motion;
-  motion.H.resize(6, static_cast<Eigen::Index>(hinge.speeds()));
-  hinge.motion(x, rates, motion);
+  HingeMotion motion = at_reference(hinge);
   const Freedoms freedoms = freedoms_of(motion);
   if (!freedoms.pure || !motion.pose.R.isIdentity(rounding) || !motion.pose.p.isZero(rounding)) return {};
   std::vector<ClosingEquation> equations;
@@ -172,6 +199,18 @@ double length_of_loops(const Model& model) {
     size = std::max(size, c->offset().p.norm());
   }
   return size > 0 ? size : 1;
+}
+
+std::vector<double> reaches_of_speeds(const Model& model, double length) {
+  const Layout& layout = model.layout();
+  std::vector<double> all(layout.speeds, 0.0);
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    reaches_of_hinge(at_reference(*model.hinges()[h].hinge), length, all.data() + layout.hinges[h].speed);
+    if (const Slot* modes = layout.modes(h)) reaches_of_modes(model.bodies()[h], length, all.data() + modes->speed);
+  }
+  for (double& reach : all)
+    if (!(reach > 0)) reach = 1;
+  return all;
 }
 
 void require_tree(const Model& model, const std::string& what) {

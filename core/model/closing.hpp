@@ -60,6 +60,9 @@ std::vector<bool> speeds_in_loops(const Model& model);
 /// is more the greatest distance from its body's root of a frame that a hinge or a constraint joins, or of a hinge or
 /// closing frame from what it is placed in; 1 where all are at one place.
 double length_of_loops(const Model& model);
+/// How fast unit speeds move what is `length` [m] away from what they turn, about: one a generalized speed, > 0. Of a
+/// hinge's rate at its reference; of a mode at the place of its body where that is most.
+std::vector<double> reaches_of_speeds(const Model& model, double length);
 /// \throws std::invalid_argument where the model has loops; `what` knows nothing of them.
 void require_tree(const Model& model, const std::string& what);
 

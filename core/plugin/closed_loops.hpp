@@ -47,7 +47,7 @@ class ClosedLoops {
   /// Sets g [m], J u [m/s] and J (equations × speeds, row-major) at a state.
   virtual void see(std::span<const double> y, std::span<double> gaps, std::span<double> rates, std::span<double> J,
                    Work& work) const noexcept = 0;
-  /// Whether loop `index` is closed as its hinge is, not at an opposite pose that solves the same equations.
+  /// Whether loop `index` is closed as its hinge is, not at another pose that solves the same equations.
   [[nodiscard]] virtual bool right_way_round(std::span<const double> y, std::size_t index,
                                              Work& work) const noexcept = 0;
   /// Scales quaternions to unit length, then moves positions to g = 0 and speeds to J u = 0 by the smallest changes in
@@ -84,6 +84,10 @@ class ClosedLoops {
                                         Work& work) const noexcept = 0;
   /// What keeps_rank goes by, at the state where a run begins.
   [[nodiscard]] virtual LoopRank rank_at(std::span<const double> y, Work& work) const = 0;
+  /// `see` without rates, where the gaps of a hinge that holds all three directions are ℓ times the turn that is left
+  /// to its pose. That has no zero elsewhere, as the equations have, and J leads the shortest way to it.
+  virtual void see_turns(std::span<const double> y, std::span<double> gaps, std::span<double> J,
+                         Work& work) const noexcept = 0;
 };
 
 /// A SensedState of closed loops may be this too (dynamic_cast).

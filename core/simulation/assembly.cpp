@@ -1,12 +1,16 @@
 #include "withy/core/simulation/assembly.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/columns.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
@@ -14,6 +18,11 @@ namespace {
 
 using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Free = std::vector<Eigen::Index>;
+
+bool holds_all_directions(const LoopClosure& loop) {
+  const auto& all = loop.equations();
+  return std::count_if(all.begin(), all.end(), [](const ClosingEquation& e) { return e.of_directions; }) == 3;
+}
 
 /// A state on its way to closure.
 class Assembler {
@@ -26,7 +35,13 @@ class Assembler {
         work_(equations.make_work()),
         gaps_(static_cast<Eigen::Index>(loops_.closing_equations())),
         rates_(gaps_.size()),
-        J_(gaps_.size(), static_cast<Eigen::Index>(model.layout().speeds)) {
+        J_(gaps_.size(), static_cast<Eigen::Index>(model.layout().speeds)),
+        length_(length_of_loops(model)),
+        reaches_(reaches_of_speeds(model, length_)),
+        slides_(reaches_.size(), false) {
+    for (const ModelRate& rate : hinge_rates(model)) slides_[rate.speed] = !rate.angular;
+    for (const LoopClosure* loop : loops_of(model))
+      holds_directions_ = holds_directions_ || holds_all_directions(*loop);
     look();
   }
 
@@ -34,34 +49,44 @@ class Assembler {
   [[nodiscard]] double gap_rate() const { return rates_.cwiseAbs().maxCoeff(); }
   [[nodiscard]] const Eigen::VectorXd& gaps() const { return gaps_; }
   [[nodiscard]] const Eigen::VectorXd& gap_rates() const { return rates_; }
-  [[nodiscard]] bool closed() const { return gap() <= closed_gap; }
+  /// ℓ of the loops, see length_of_loops.
+  [[nodiscard]] double length() const { return length_; }
+  /// How fast what the loops join moves at most by one of the speeds [m/s].
+  [[nodiscard]] double fastest() const {
+    double most = 0;
+    for (std::size_t k = 0; k < reaches_.size(); ++k)
+      most = std::max(most, reaches_[k] * std::abs(state_.y[model_.layout().positions + k]));
+    return most;
+  }
 
-  /// Moves the coordinates of free speeds; where they do not close the loops, the state stays.
+  /// A loop that was closed at another pose than its hinge's; nothing where none was.
+  [[nodiscard]] const std::optional<std::size_t>& turned_over() const { return turned_over_; }
+
+  /// Moves the coordinates of free speeds; where they do not close the loops, the state stays. Where the equations lead
+  /// to a pose that is none of the hinge's, or nowhere, the turns that are left are followed first.
   bool close_positions(const Free& free) {
-    if (closed()) return true;
+    if (is_closed_well(closed_gap)) return true;
     if (free.empty()) return false;
-    constexpr int most = 200;
     const State start = state_;
-    double best = gap();
-    for (int i = 0, idle = 0; i < most && idle < 30; ++i) {
-      Eigen::VectorXd change = smallest(free, gaps_);
-      constexpr double longest = 0.3;  // [rad, m]
-      const double most_moved = change.cwiseAbs().maxCoeff();
-      if (!std::isfinite(most_moved)) break;
-      if (most_moved > longest) change *= longest / most_moved;
-      move(change);
-      if (gap() <= finest_gap || (closed() && gap() >= 0.5 * best)) break;
-      idle = gap() < 0.9 * best ? 0 : idle + 1;
-      best = std::min(best, gap());
+    for (const bool by_turns : {false, true}) {
+      if (by_turns) {
+        if (!holds_directions_) break;
+        turns_ = true;
+        look();
+        follow(free);
+        turns_ = false;
+        look();
+      }
+      follow(free);
+      if (is_closed_well(good_gap)) return true;
+      state_ = start;
+      look();
     }
-    if (closed()) return true;
-    state_ = start;
-    look();
     return false;
   }
   bool close_rates(const Free& free) {
     const double before = gap_rate();
-    if (before <= closed_gap) return true;
+    if (before <= closed_gap * std::min(length_, fastest())) return true;
     if (free.empty()) return false;
     const std::size_t first = model_.layout().positions;
     const State start = state_;
@@ -70,20 +95,57 @@ class Assembler {
       for (Eigen::Index k = 0; k < change.size(); ++k) state_.y[first + static_cast<std::size_t>(k)] += change[k];
       look();
     }
-    if (gap_rate() <= 1e-9 * std::max(1.0, before)) return true;
+    if (gap_rate() <= good_gap * std::max(fastest(), before)) return true;
     state_ = start;
     look();
     return false;
   }
 
  private:
-  static constexpr double closed_gap = 1e-10, finest_gap = 1e-15;  ///< [m]
+  /// Over ℓ: gaps that stay as they are; that will do where the method comes no nearer, as in a run
+  /// (ClosedLoops::close); that are rounding.
+  static constexpr double closed_gap = 1e-10, good_gap = 1e-9, finest_gap = 1e-15;
 
+  [[nodiscard]] bool is_closed_well(double gap_over_length) {
+    if (!(gap() <= gap_over_length * length_)) return false;
+    for (std::size_t i = 0; i < loops_of(model_).size(); ++i) {
+      if (loops_.right_way_round(state_.y, i, work_)) continue;
+      turned_over_ = i;
+      return false;
+    }
+    return true;
+  }
+  /// Newton's method for the gaps, until it comes no nearer.
+  void follow(const Free& free) {
+    constexpr int most = 200;
+    double best = gap();
+    for (int i = 0, idle = 0; i < most && idle < 30; ++i) {
+      Eigen::VectorXd change = smallest(free, gaps_);
+      if (!change.allFinite()) break;
+      move(part_of(change) * change);
+      if (gap() <= finest_gap * length_ || (gap() <= closed_gap * length_ && gap() >= 0.5 * best)) break;
+      idle = gap() < 0.9 * best ? 0 : idle + 1;
+      best = std::min(best, gap());
+    }
+  }
+  /// The part of a change that is taken at once, in which nothing moves by more than a third of the loops' size: a turn
+  /// by 0.3 rad. What slides may come from farther away.
+  [[nodiscard]] double part_of(const Eigen::VectorXd& change) const {
+    constexpr double longest = 0.3;
+    double part = 1;
+    for (std::size_t k = 0; k < reaches_.size(); ++k) {
+      const double bound = longest * (slides_[k] ? std::max(length_, gap()) : length_);
+      const double moved = reaches_[k] * std::abs(change[static_cast<Eigen::Index>(k)]);
+      if (moved > bound) part = std::min(part, bound / moved);
+    }
+    return part;
+  }
   void look() {
     J_.setZero();
-    loops_.see(state_.y, {gaps_.data(), static_cast<std::size_t>(gaps_.size())},
-               {rates_.data(), static_cast<std::size_t>(rates_.size())},
-               {J_.data(), static_cast<std::size_t>(J_.size())}, work_);
+    const std::span<double> gaps(gaps_.data(), static_cast<std::size_t>(gaps_.size()));
+    const std::span<double> J(J_.data(), static_cast<std::size_t>(J_.size()));
+    if (turns_) return loops_.see_turns(state_.y, gaps, J, work_);
+    loops_.see(state_.y, gaps, {rates_.data(), static_cast<std::size_t>(rates_.size())}, J, work_);
   }
   /// The change of free speeds with J change = −missing, or as near as they come to it, that is the smallest in M.
   [[nodiscard]] Eigen::VectorXd smallest(const Free& free, const Eigen::VectorXd& missing) const {
@@ -117,6 +179,12 @@ class Assembler {
   Work work_;
   Eigen::VectorXd gaps_, rates_;
   DenseMatrix J_;
+  double length_;
+  std::vector<double> reaches_;
+  std::vector<bool> slides_;       ///< speeds
+  bool holds_directions_ = false;  ///< a hinge of some loop holds all three
+  bool turns_ = false;             ///< gaps and rows are those of ClosedLoops::see_turns
+  std::optional<std::size_t> turned_over_;
 };
 
 /// Speeds that may change: of hinges, with `modes` those of bodies too; what is given and what motions drive does not.
@@ -140,14 +208,16 @@ std::vector<bool> either(std::vector<bool> a, const std::vector<bool>& b) {
 }
 
 /// Whether `close` closes the loops, called with the speeds that may change. What is given stays: first with what is
-/// kept, then by itself, then with modes free to move. A gap [m, m/s] that is next to nothing is closed by all.
+/// kept, then by itself, then with modes free to move. A gap [m, m/s] that is next to nothing, also beside `size`, of
+/// the loops or of how fast they move, is closed by all.
 template <class Close>
 bool closes(const Model& model, const GivenState& given, const GivenState* kept, std::vector<bool> GivenState::*part,
-            double gap, Close&& close) {
+            double gap, double size, Close&& close) {
   constexpr double near_enough = 1e-3;
   return (kept != nullptr && close(free_speeds(model, either(given.*part, kept->*part), false))) ||
          close(free_speeds(model, given.*part, false)) || close(free_speeds(model, given.*part, true)) ||
-         (gap <= near_enough && close(free_speeds(model, std::vector<bool>(model.layout().speeds, false), true)));
+         (gap <= near_enough * std::min(size, 1.0) &&
+          close(free_speeds(model, std::vector<bool>(model.layout().speeds, false), true)));
 }
 
 /// The coordinate or speed that has changed most, in words, with its unit.
@@ -193,27 +263,24 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
   Assembler assembler(model, equations, state);
   Assembly result;
   const double gap = assembler.gap();
-  if (!closes(model, given, kept, &GivenState::positions, gap,
+  if (!closes(model, given, kept, &GivenState::positions, gap, assembler.length(),
               [&](const auto& free) { return assembler.close_positions(free); })) {
+    if (assembler.turned_over()) {
+      result.loop = *assembler.turned_over();
+      result.fault =
+          "the loop closes the wrong way round from the initial state, its hinge turned over by half or a third of a "
+          "turn; give a nearer `guess`";
+      return result;
+    }
     result.loop = farthest(model, assembler.gaps());
     result.fault = "the loop cannot be closed from the initial state: its frames are " + brief(gap) +
                    " m apart there (turns count with the length of the largest flexible body, or of what hinges and "
-                   "constraints join), and what `initial` gives and "
-                   "motions prescribe leaves no way; give fewer coordinates, or a nearer `guess`";
-    return result;
-  }
-  auto& loops = dynamic_cast<const ClosedLoops&>(equations);
-  Work work = equations.make_work();
-  for (std::size_t i = 0; i < loops_of(model).size(); ++i) {
-    if (loops.right_way_round(state.y, i, work)) continue;
-    result.loop = i;
-    result.fault =
-        "the loop closes the wrong way round from the initial state, its hinge turned over by half a turn; "
-        "give a nearer `guess`";
+                   "constraints join), and no way to close it was found with what `initial` gives and motions "
+                   "prescribe; give fewer coordinates, or a nearer `guess`";
     return result;
   }
   const double rate = assembler.gap_rate();
-  if (!closes(model, given, kept, &GivenState::rates, rate,
+  if (!closes(model, given, kept, &GivenState::rates, rate, assembler.fastest(),
               [&](const auto& free) { return assembler.close_rates(free); })) {
     result.loop = farthest(model, assembler.gap_rates());
     result.fault = "the loop does not stay closed: the initial speeds part its frames at " + brief(rate) +

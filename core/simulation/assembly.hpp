@@ -23,8 +23,9 @@ struct Assembly {
 
 /// Closes the loops of a state: positions by Newton's method, each step the smallest in the sense of M, then speeds by
 /// the smallest change. First the hinges that are not given move, then with them the modes that are not given. What is
-/// given stays, but where it lies within a thousandth of the largest body's length of closure and leaves no way: then
-/// all moves. Speeds that motions prescribe always stay.
+/// given stays, but where it leaves no way and the gap is below 1 mm and a thousandth of ℓ (length_of_loops), or frames
+/// part at less than 1 mm/s and a thousandth of how fast the loops move: then all moves. Speeds that motions prescribe
+/// always stay.
 /// \param equations of the model; ClosedLoops
 /// \param kept what stays beside what is given where the other hinges can close the loops, positions and rates each for
 /// themselves; null: nothing

@@ -1,5 +1,6 @@
 #include "withy/core/simulation/end_notes.hpp"
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/given_steps.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
@@ -9,9 +10,15 @@ namespace withy {
 std::string note_on_jumps(const Model& model, const std::vector<double>& times) {
   std::string text = "Steps were rejected again and again near t =";
   for (const double t : times) text.append(" ").append(brief(t));
-  if (model.loads().empty() && model.motions().empty()) return text + " s: what moves there is fast beside the rest.";
-  return text +
-         " s: something changes there within a step, as where a stop is met or a load jumps without declaring it.";
+  const std::size_t loops = loops_of(model).size();  // which are among the loads
+  text +=
+      model.loads().size() == loops && model.motions().empty()
+          ? " s: what moves there is fast beside the rest"
+          : " s: something changes there within a step, as where a stop is met or a load jumps without declaring it";
+  // Closing changes what implicit steps longer than the periods of modes leave at rest.
+  if (loops > 0 && !model.layout().bodies.empty())
+    text += "; or closing the loops after long steps sets stiff modes in motion: another integrator tells";
+  return text + ".";
 }
 
 std::string note_on_missed_events(const Model& model, const State& end) {

@@ -7,6 +7,7 @@
 
 #include "four_bar.hpp"
 #include "withy/core/simulation/changing_equations.hpp"
+#include "withy/core/simulation/end_notes.hpp"
 
 namespace withy::test {
 namespace {
@@ -179,6 +180,34 @@ TEST(ClosedLoops, InitialValuesStayOrAreRefusedWithTheDistance) {
                              testing::HasSubstr("m apart there")));
   EXPECT_THAT(message(replaced(text, "rate: [6]}", "rate: [6]}, pivot: {rate: [6]}")),
               testing::HasSubstr("the initial speeds part its frames at"));
+}
+
+TEST(ClosedLoops, ALoadThatFollowsAReactionOfItsOwnInstantIsRefused) {
+  for (const char* reaction : {"constraint: loop", "hinge: pivot"}) {
+    for (const char* measured : {"k.fx", "twice"}) {
+      const std::string good = four_bar(rigid_coupler, "dopri5") + "outputs:\n  k: {type: reaction, " + reaction +
+                               "}\n  twice: {type: expression, value: 2 * k.fx}\n";
+      const auto with = [&](const std::string& more) {
+        return message(replaced(good, "  torque:",
+                                std::string("  servo: {type: pid, of: ") + measured + ", hinge: motor, integral: 1" +
+                                    more + "}\n  torque:"));
+      };
+      EXPECT_THAT(with(""), testing::HasSubstr(std::string("signal '") + measured + "' depends on efforts"))
+          << reaction;
+      EXPECT_EQ(with(", sample: 0.01"), "") << reaction;
+    }
+  }
+}
+
+TEST(ClosedLoops, ANoteOnRejectedStepsNamesWhatMayBeThere) {
+  const std::string closing = "closing the loops after long steps sets stiff modes in motion";
+  const auto note = [](const std::string& scene) { return note_on_jumps(*Made(scene).scene.model, {1.0}); };
+  const std::string loaded = four_bar(beam_coupler, "radau"), rigid = four_bar(rigid_coupler, "radau");
+  EXPECT_THAT(note(loaded), testing::AllOf(testing::HasSubstr("a load jumps"), testing::HasSubstr(closing)));
+  EXPECT_THAT(note(rigid),
+              testing::AllOf(testing::HasSubstr("a load jumps"), testing::Not(testing::HasSubstr(closing))));
+  const std::string torque = "loads:\n  torque: {type: hinge-effort, hinge: motor, law: constant, value: 1.5}\n";
+  EXPECT_THAT(note(replaced(rigid, torque, "")), testing::HasSubstr("what moves there is fast beside the rest."));
 }
 
 TEST(ClosedLoops, AllFaultsOfConstraintsAreReportedWhereTheyStand) {
