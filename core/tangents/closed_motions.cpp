@@ -105,6 +105,7 @@ ClosedMotions::At ClosedMotions::at(std::span<const double> y) const {
 
 Eigen::VectorXd ClosedMotions::multipliers(const At& at, const Eigen::VectorXd& residual) const {
   if (!at.J.allFinite()) return Eigen::VectorXd::Constant(at.J.rows(), nan);
+  if (followers_.empty()) return Eigen::VectorXd::Zero(at.J.rows());
   return transposed_inverse(at.J(Eigen::all, followers_)) * residual(followers_);
 }
 
@@ -119,6 +120,7 @@ ClosedMotions::Changes ClosedMotions::changes(std::span<const double> y, const A
     by.efforts.setConstant(nan);
     return by;
   }
+  if (followers_.empty()) return by;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(at.J(Eigen::all, followers_));
   for (const Eigen::Index i : others_) {
     if (!in_loops_[static_cast<std::size_t>(i)]) continue;
@@ -134,7 +136,7 @@ ClosedMotions::Changes ClosedMotions::changes(std::span<const double> y, const A
     const double step = far * std::min(1.0, length_) / at.Z.col(i).cwiseAbs().maxCoeff();
     const Eigen::VectorXd slope = central_difference(look, step);
     by.efforts.col(i) = slope.head(n);
-    if (!followers_.empty()) by.accelerations(followers_, i) = -factors.solve(slope.tail(at.J.rows()));
+    by.accelerations(followers_, i) = -factors.solve(slope.tail(at.J.rows()));
   }
   return by;
 }
@@ -148,7 +150,7 @@ void ClosedMotions::close(std::span<double> y) const {
     const double left = now.gaps.cwiseAbs().maxCoeff();
     // Of redundant equations, and where nothing can follow, what is left is rounding already.
     if (left <= rounding || (left <= 1e5 * rounding && !(left < 0.5 * before))) return;
-    if (!std::isfinite(left)) break;
+    if (!std::isfinite(left) || followers_.empty()) break;
     before = left;
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(now.J(Eigen::all, followers_));
     Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(follows_.size()));

@@ -97,6 +97,21 @@ TEST(ClosedMotions, AreTheSameWhicheverHingeIsCut) {
   EXPECT_NEAR(modes[0].frequency(), std::sqrt(weighed / swung), 1e-12 * modes[0].frequency());
 }
 
+TEST(ClosedMotions, ADoorOnTwoHingesSwingsAsOnOne) {
+  const std::string door = R"(
+gravity: [0, 0, -9.81]
+bodies: {door: {type: rigid, mass: 20, center_of_mass: [0.4, 0, 1], inertia: [9, 8, 2, 0, 0, 0], frames: {top: {position: [0.3, 0.2, 1]}}}}
+hinges: {low: {type: revolute, axis: [0.3, 0.2, 1], parent: world, child: door}}
+)";
+  const std::string high =
+      "constraints: {high: {type: hinge, hinge: revolute, axis: [0.3, 0.2, 1], a: world, b: door.top, offset: "
+      "{position: "
+      "[0.3, 0.2, 1]}}}\n";
+  const std::vector<Mode> one = modes_of(scene_of(door)), two = modes_of(scene_of(door + high));
+  ASSERT_EQ(two.size(), 1U);
+  EXPECT_NEAR(two[0].frequency(), one.at(0).frequency(), 1e-12 * one[0].frequency());
+}
+
 /// A beam of 2 m, 3 kg/m and 500 N m² whose tip is on a slider of the world; `push` along it.
 std::string supported(const std::string& root, const std::string& bending, double push) {
   return "bodies:\n  beam: {type: beam, length: 2, mass_per_length: 3, bending_y: {stiffness: 500, " + bending +
