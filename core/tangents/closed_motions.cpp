@@ -52,6 +52,7 @@ ClosedMotions::ClosedMotions(const Model& model, std::shared_ptr<const Equations
       equations_(std::move(equations)),
       loops_(dynamic_cast<const ClosedLoops&>(*equations_)),
       length_(length_of_loops(model)),
+      reaches_(reaches_of_speeds(model, length_)),
       in_loops_(speeds_in_loops(model)),
       follows_(held.size(), false) {
   choose(see(state.y).J, held);
@@ -112,7 +113,7 @@ Eigen::VectorXd ClosedMotions::multipliers(const At& at, const Eigen::VectorXd& 
 ClosedMotions::Changes ClosedMotions::changes(std::span<const double> y, const At& at,
                                               const Eigen::VectorXd& multipliers,
                                               const Eigen::VectorXd& accelerations) const {
-  /// [rad], and in lengths of the loop: eighth powers of it are below rounding.
+  /// Turns [rad] of anything, and moves in lengths of the loop: eighth powers of it are below rounding.
   constexpr double far = 0.01;
   const Eigen::Index n = at.J.cols();
   Changes by{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
@@ -122,6 +123,7 @@ ClosedMotions::Changes ClosedMotions::changes(std::span<const double> y, const A
   }
   if (followers_.empty()) return by;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(at.J(Eigen::all, followers_));
+  const Eigen::Map<const Eigen::VectorXd> reaches(reaches_.data(), n);
   for (const Eigen::Index i : others_) {
     if (!in_loops_[static_cast<std::size_t>(i)]) continue;
     const auto look = [&](double h) {
@@ -133,7 +135,8 @@ ClosedMotions::Changes ClosedMotions::changes(std::span<const double> y, const A
       both << J.transpose() * multipliers, J * accelerations;
       return both;
     };
-    const double step = far * std::min(1.0, length_) / at.Z.col(i).cwiseAbs().maxCoeff();
+    const double reach = at.Z.col(i).cwiseAbs().cwiseProduct(reaches).maxCoeff();
+    const double step = far * length_ / reach;
     const Eigen::VectorXd slope = central_difference(look, step);
     by.efforts.col(i) = slope.head(n);
     by.accelerations(followers_, i) = -factors.solve(slope.tail(at.J.rows()));

@@ -66,6 +66,7 @@ class ClosedMotions {
   std::shared_ptr<const EquationsOfMotion> equations_;
   const ClosedLoops& loops_;
   double length_;  ///< of the loops, as length_of_loops
+  std::vector<double> reaches_;  ///< reaches_of_speeds
   std::vector<bool> in_loops_, follows_;
   std::vector<Eigen::Index> followers_, others_;
 };

@@ -1,5 +1,6 @@
 // Small motions of closed loops: linkages in one coordinate, beams and columns between supports, the equations
 // themselves beside a state, and equilibria under small forces.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -151,6 +152,38 @@ TEST(ClosedMotions, AColumnBetweenPinsLosesItsStiffnessAtEulersLoad) {
     const double squared = std::pow(std::numbers::pi, 4) * unit * unit * (1 - share);
     EXPECT_NEAR(modes.at(0).squared_frequency(), squared, 1e-7 * std::abs(squared)) << share;
   }
+}
+
+/// A stage on two legs of a metre with flexures of 3 cm at their ends, all welded, under gravity; lengths times `unit`.
+std::string flexures(double unit) {
+  const auto n = [](double x) { return fmt::format("{}", x); };
+  const double k = unit, k2 = k * k;
+  const std::string beam = "{type: beam, length: " + n(0.03 * k) + ", mass_per_length: " + n(0.05 / k) +
+                           ", bending_y: {stiffness: " + n(0.06 * k * k2) + ", modes: 2, family: clamped-free}}";
+  const std::string leg = "{type: rigid, mass: 1, center_of_mass: [" + n(0.5 * k) + ", 0, 0], inertia: [" +
+                          n(0.001 * k2) + ", " + n(0.08 * k2) + ", " + n(0.08 * k2) +
+                          ", 0, 0, 0], frames: {end: {position: [" + n(k) + ", 0, 0]}}}";
+  const std::string turned = "orientation: {axis: [0, 0, 1], angle: ";
+  return "gravity: [" + n(-2.943 * k) + ", " + n(-9.81 * k) + ", 0]\nbodies:\n  foot_a: " + beam +
+         "\n  head_a: " + beam + "\n  foot_b: " + beam + "\n  head_b: " + beam + "\n  leg_a: " + leg +
+         "\n  leg_b: " + leg + "\n  stage: {type: rigid, mass: 3, center_of_mass: [" + n(0.2 * k) + ", " + n(0.05 * k) +
+         ", 0], inertia: [" + n(0.05 * k2) + ", " + n(0.05 * k2) + ", " + n(0.1 * k2) +
+         ", 0, 0, 0], frames: {end: {position: [" + n(0.5 * k) + ", 0, 0], " + turned +
+         "\"-90 deg\"}}}}\nhinges:\n  a1: {type: weld, parent: world, child: foot_a, offset: {" + turned +
+         "\"-90 deg\"}}}\n  a2: {type: weld, parent: foot_a.tip, child: leg_a}\n  a3: {type: weld, parent: leg_a.end, "
+         "child: head_a}\n  a4: {type: weld, parent: head_a.tip, child: stage, offset: {" +
+         turned + "\"90 deg\"}}}\n  b1: {type: weld, parent: world, child: foot_b, offset: {position: [" + n(0.5 * k) +
+         ", 0, 0], " + turned +
+         "\"-90 deg\"}}}\n  b2: {type: weld, parent: foot_b.tip, child: leg_b}\n  b3: {type: weld, parent: leg_b.end, "
+         "child: head_b}\nconstraints: {loop: {type: hinge, hinge: weld, a: head_b.tip, b: stage.end}}\n";
+}
+
+TEST(ClosedMotions, OfShortFlexuresAreTheSameInOtherUnitsOfLength) {
+  const std::vector<Mode> metres = modes_of(scene_of(flexures(1))), others = modes_of(scene_of(flexures(100)));
+  ASSERT_EQ(metres.size(), 5U);
+  ASSERT_EQ(others.size(), 5U);
+  for (std::size_t k = 0; k < metres.size(); ++k)
+    EXPECT_NEAR(others[k].frequency(), metres[k].frequency(), 1e-8 * metres[k].frequency());
 }
 
 /// The linkage on a boom that bends, on a hub that turns; springs, a damper and a controller with states.
