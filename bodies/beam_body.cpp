@@ -17,6 +17,8 @@
 /// two planes is coupled; the axis is straight, and strains are resolved in axes that do not turn.
 #include "beam_body.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -95,9 +97,7 @@ class Beam final : public Body, public TurnedSections, private Rod {
     }
     return expansion_at(x, linear_fields(strains_, x));
   }
-  std::string stations() const override {
-    return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
-  }
+  std::string stations() const override { return fmt::format("root, tip, or a coordinate x from 0 to {} m", length_); }
   std::shared_ptr<const Body> expanded(const StrainKinematics& kinematics) const override {
     return std::make_shared<const Beam>(material_, strains_, kinematics);
   }

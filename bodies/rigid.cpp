@@ -1,5 +1,7 @@
 /// \file
 /// The rigid body: mass, centre of mass and inertia about it.
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 
 #include "withy/core/plugin/body.hpp"
@@ -48,7 +50,7 @@ std::unique_ptr<Body> make_rigid(const Value& p, const MakeContext& context) {
         "no distribution of mass has this inertia about its centre of mass; need principal "
         "moments >= 0, none above the "
         "sum of the other two (triangle inequality; " +
-            (std::isfinite(excess) ? "here the greatest exceeds the sum by " + std::to_string(excess) + " kg m^2)"
+            (std::isfinite(excess) ? fmt::format("here the greatest exceeds the sum by {:.4g} kg m^2)", excess)
                                    : std::string("here they are beyond the range of numbers)")));
     return nullptr;
   }

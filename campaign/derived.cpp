@@ -36,15 +36,17 @@ std::string scene_name_trouble(const Plan& plan, const Derived& derived, const s
   return fmt::format("{} neither varies nor is a number of the scene", in_quotes(name));
 }
 
-/// Why a name cannot be used; empty where it can. \param place among varied_paths(); −1: none of them
-std::string name_trouble(const Plan& plan, const Derived& derived, const std::string& name, int place) {
+/// Why a name cannot be used; empty where it can.
+/// \param place among varied_paths(); −1: none of them
+/// \param read whether levels with units have been read as numbers: they are where nothing else is wrong
+std::string name_trouble(const Plan& plan, const Derived& derived, const std::string& name, int place, bool read) {
   if (place < 0) return scene_name_trouble(plan, derived, name);
   const auto index = static_cast<std::size_t>(place);
   if (index >= plan.axes.size()) return {};
   if (plan.design == Design::one_at_a_time && !own_number(*plan.base, name))
     return in_quotes(name) + " is not a number of the scene";
   const Axis& varied = plan.axes[index];
-  if (varied.drawn() || !varied.levels.numbers.empty()) return {};
+  if (varied.drawn() || !varied.levels.numbers.empty() || !read) return {};
   return fmt::format("{} varies, but not as plain numbers", in_quotes(name));
 }
 
@@ -87,9 +89,11 @@ void read_derived(const Value& given, const PlanReader& reader, Plan& plan) {
 }
 
 void check_derived(const Plan& plan, Registry& registry, Problems& problems) {
+  const bool read = problems.none();
   for (const Derived& d : plan.derived)
     for (const auto& [name, at] : d.names)
-      if (const std::string why = name_trouble(plan, d, name, at); !why.empty()) problems.of_plan().error(d.place, why);
+      if (const std::string why = name_trouble(plan, d, name, at, read); !why.empty())
+        problems.of_plan().error(d.place, why);
   if (!problems.none() || plan.derived.empty()) return;
   const CaseValues first = Cases(plan).values(0);
   const std::vector<std::string> paths = varied_paths(plan);

@@ -69,10 +69,12 @@ Scene check_made(const std::string& text, const Tree& tree, const FlexibleLinks&
 
 /// Refuses a joint that moves no mass in the scene's state, as one about an axis on which all of its mass sits: no run
 /// could begin.
-void check_motion(const Scene& scene, const Tree& tree, const std::string& file) {
+/// \returns a remark where joints move none together: elsewhere runs begin, and the scene is good for these
+std::string check_motion(const Scene& scene, const Tree& tree, const std::string& file) {
   const auto equations = compile_model(*scene.formulation, scene.model);
   const auto rate = unsolvable_rate(*scene.model, *equations, scene.initial);
-  if (!rate) return;
+  if (!rate) return {};
+  if (rate->together) return "no run begins in the state that the scene has: " + rate->why;
   const std::string& hinge = scene.model->hinges()[rate->hinge].name;
   const auto joint =
       std::find_if(tree.joints.begin(), tree.joints.end(), [&](const Joint& j) { return j.name == hinge; });
@@ -106,7 +108,8 @@ ImportedScene import_tree(const ModelImport& what, const std::string& text, Regi
   if (!what.flexible.empty()) flexible = read_flexible(read_bytes(what.flexible), what.flexible, tree);
   scene.text = scene_text(tree, flexible, what.file);
   scene.remarks = tree.remarks;
-  check_motion(check_made(scene.text, tree, flexible, what.file, registry), tree, what.file);
+  const std::string remark = check_motion(check_made(scene.text, tree, flexible, what.file, registry), tree, what.file);
+  if (!remark.empty()) scene.remarks.push_back(remark);
   return scene;
 }
 

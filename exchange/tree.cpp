@@ -18,9 +18,9 @@ std::string scene_name(const std::string& name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') c = '_';
   if (made.empty() || (std::isalpha(static_cast<unsigned char>(made.front())) == 0 && made.front() != '_'))
     made = '_' + made.substr(0, 63);
-  // YAML reads these as no name at all.
-  for (const char* nothing : {"null", "Null", "NULL"})
-    if (made == nothing) return '_' + made;
+  // YAML reads these as no text.
+  for (const char* other : {"null", "Null", "NULL", "true", "True", "TRUE", "false", "False", "FALSE"})
+    if (made == other) return '_' + made;
   return name == "world" ? "_world" : made;
 }
 

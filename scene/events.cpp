@@ -52,6 +52,37 @@ std::optional<Setting> setting_of(const std::string& text) {
   return Setting{path.substr(0, dot), key.substr(0, key.find_last_not_of(' ') + 1), text.substr(equals + 1)};
 }
 
+/// Puts a value at a path within a load, by members of maps and items of lists.
+/// \returns what is wrong with the path; empty where nothing is
+std::string put_setting(Value& form, std::string key, const Value& value) {
+  Value* target = &form;
+  for (;;) {
+    const std::size_t dot = std::min(key.find('.'), key.size());
+    const std::string next = key.substr(0, dot);
+    Value* found = nullptr;
+    if (target->kind() == Value::Kind::list) {
+      const std::size_t count = target->items().size();
+      const auto index = list_index(next, count);
+      if (!index) return fmt::format("got index {}; need 0 to {}", in_quotes(next), static_cast<long>(count) - 1);
+      found = &target->items()[*index];
+    } else {
+      const auto at = std::find_if(target->members().begin(), target->members().end(),
+                                   [&](const Value::Member& m) { return m.first == next; });
+      if (at != target->members().end()) found = &at->second;
+    }
+    if (found == nullptr) {
+      target->set(key, value);
+      return {};
+    }
+    if (dot == key.size()) {
+      *found = value;
+      return {};
+    }
+    target = found;
+    key.erase(0, dot + 1);
+  }
+}
+
 }  // namespace
 
 SceneEvents::SceneEvents(Value events, const Document& document, const Checker& checker)
@@ -109,18 +140,12 @@ Value SceneEvents::changed(const std::string& event, const std::string& load, co
   for (const Value& item : items_of(events_.at(event).at("do"), "set")) {
     const std::optional<Setting> setting = setting_of(item.text());
     if (!setting || setting->load != load) continue;
-    Value* target = &form;
-    std::string key = setting->key;
-    for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.')) {
-      const auto next = std::find_if(target->members().begin(), target->members().end(),
-                                     [&](const Value::Member& m) { return m.first == key.substr(0, dot); });
-      if (next == target->members().end()) break;
-      target = &next->second;
-      key.erase(0, dot + 1);
-    }
     Document read;
-    if (read_document(setting->text, {item.place().line, given.place().path + "/" + setting->key}, read, diagnostics))
-      target->set(key, read.root);
+    Place place = {item.place().line, 0, given.place().path + "/" + setting->key};
+    std::replace(place.path.begin(), place.path.end(), '.', '/');
+    if (read_document(setting->text, {place.line, place.path}, read, diagnostics))
+      if (const std::string why = put_setting(form, setting->key, read.root); !why.empty())
+        diagnostics.error(place, why);
     changes = true;
   }
   return form;

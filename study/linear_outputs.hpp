@@ -29,7 +29,9 @@ Eigen::RowVectorXd row_of_free(const LinearOutput& output, const std::vector<Eig
 struct SensedDerivatives {
   Eigen::VectorXd values;
   Eigen::MatrixXd by_state;  ///< columns × size
-  double uncertainty = 0;    ///< greatest change of an element at the last refinement, over the greatest of its unit
+  /// Greatest change of an element at the last refinement, over the greatest of its unit. Rows that are rounding beside
+  /// others of their sensor do not count.
+  double uncertainty = 0;
 };
 /// By central differences of eighth order. \throws std::domain_error as SmallMotions::sensed
 SensedDerivatives sensed_derivatives(SmallMotions& motions);

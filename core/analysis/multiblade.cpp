@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -31,7 +32,11 @@ std::string likeness(const Model& model, int body) {
   const ModalShape& shape = model.bodies()[static_cast<std::size_t>(body)].body->shape();
   std::string text = "(" + std::to_string(hinge.hinge->coordinates()) + ':' + std::to_string(hinge.hinge->speeds());
   for (const std::string& name : shape.mode_names) text += ' ' + name;
-  text += ' ' + std::to_string(shape.stiffness.norm());
+  char stiffness[32];  // whatever its size: lengths may be micrometres
+  const auto end =
+      std::to_chars(stiffness, stiffness + sizeof stiffness, shape.stiffness.norm(), std::chars_format::general, 10);
+  text += ' ';
+  text.append(stiffness, end.ptr);
   for (const int child : children(model, body)) text += likeness(model, child);
   return text + ')';
 }

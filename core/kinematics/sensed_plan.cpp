@@ -1,6 +1,7 @@
 #include "withy/core/kinematics/sensed_plan.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -42,6 +43,11 @@ std::vector<PointFields> points_of(const ModalShape& shape, StrainOrder order) {
   return points;
 }
 
+std::string digits_of(double x) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, x).ptr};
+}
+
 /// Whether a body is the piece of a beam in segments that lies before another on the side of its root.
 bool is_piece_before(const Model& model, std::size_t body, std::size_t other) {
   const std::optional<Segment>&a = model.bodies()[body].segment, &b = model.bodies()[other].segment;
@@ -63,7 +69,7 @@ void Plan::add_cut(const SectionPlace& place) {
   const BodyNode& node = model.bodies()[cut.body];
   const std::optional<BodyCut> given = node.body->cut(place.x);
   if (!given) {
-    throw std::invalid_argument("body '" + node.name + "' cannot be cut at x = " + std::to_string(place.x) +
+    throw std::invalid_argument("body '" + node.name + "' cannot be cut at x = " + digits_of(place.x) +
                                 " m; need a slender body and a place on it");
   }
   BodyPlan& body = bodies[cut.body];

@@ -109,6 +109,28 @@ std::string body_of_speed(const Model& model, std::size_t speed) {
   return {};
 }
 
+/// Hinges that move no mass together, of which each moves some.
+std::optional<UnsolvableRate> massless_together(const Model& model, const DenseSystem& system) {
+  const AttainableAccuracy a = attainable_accuracy(system);
+  if (a.accuracy < 1 || a.weakest.empty()) return {};
+  const Eigen::Map<const Eigen::VectorXd> weakest(a.weakest.data(), static_cast<Eigen::Index>(a.weakest.size()));
+  double all = 0, most = 0;
+  std::size_t greatest = 0;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    const double share =
+        weakest.segment(static_cast<Eigen::Index>(slot.speed), static_cast<Eigen::Index>(slot.speeds)).squaredNorm();
+    all += share;
+    if (share > most) most = share, greatest = h;
+  }
+  if (all < 0.5) return {};  // modes: what is told of accuracy names them, and which to leave out
+  return UnsolvableRate{greatest,
+                        "the mass matrix is singular here: these move no mass together beyond rounding: " +
+                            owners_of(model.layout(), a.weakest) +
+                            "; give the bodies between them mass or inertia, lock a hinge, or begin elsewhere",
+                        true};
+}
+
 /// Calls act(speed, system without it) for the highest mode of every family of every body that is not prescribed.
 template <class Act>
 void without_highest_modes(const Model& model, const DenseSystem& system, Act&& act) {
@@ -221,7 +243,8 @@ std::optional<UnsolvableRate> unsolvable_rate(const Model& model, const Equation
   const Layout& layout = model.layout();
   if (const auto hinge = nonfinite_hinge(model, state, 0)) return UnsolvableRate{hinge->hinge, hinge->why};
   if (layout.speeds == 0 || layout.speeds > largest_examined) return {};
-  const FaultyRate rate = faulty_rate(model, equations, state, equations.system(state.time, state.y));
+  const DenseSystem system = equations.system(state.time, state.y);
+  const FaultyRate rate = faulty_rate(model, equations, state, system);
   const std::string& name = layout.speed_names[rate.speed];
   if (rate.fault == RateFault::no_number)
     return UnsolvableRate{
@@ -232,7 +255,7 @@ std::optional<UnsolvableRate> unsolvable_rate(const Model& model, const Equation
                                           " moves no mass beyond rounding; give body '" +
                                           body_of_speed(model, rate.speed) +
                                           "', or what hangs on it, mass or inertia there, or lock the hinge"};
-  return {};
+  return massless_together(model, system);
 }
 
 std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance) {
@@ -243,11 +266,15 @@ std::string unattainable(const Model& model, const EquationsOfMotion& equations,
   if (tolerance >= error.relative) return {};
   std::string text = "rounding leaves accelerations an error of " + brief(error.relative) + ", most in " +
                      layout.speed_names[error.speed];
-  if (!std::isfinite(error.relative))
+  const bool examined = layout.speeds <= largest_examined;
+  const DenseSystem system = examined ? equations.system(state.time, state.y) : DenseSystem{};
+  const AttainableAccuracy a = examined ? attainable_accuracy(system) : AttainableAccuracy{};
+  if (!std::isfinite(error.relative)) {
+    if (a.accuracy >= 1 && !a.weakest.empty())
+      return "the mass matrix is singular: what moves no mass is " + owners_of(layout, a.weakest);
     return "the accelerations of " + layout.speed_names[error.speed] + " are beyond the range of numbers";
-  if (layout.speeds > largest_examined) return text;
-  const DenseSystem system = equations.system(state.time, state.y);
-  const AttainableAccuracy a = attainable_accuracy(system);
+  }
+  if (!examined) return text;
   text += "; the condition of the mass matrix is " + brief(a.condition) +
           " with each coordinate in the unit of its own inertia, and the direction that moves least mass, " +
           brief(a.share) + " of its coordinates' own, is " +

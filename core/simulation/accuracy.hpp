@@ -80,6 +80,9 @@ struct UnsolvableRate {
   /// That its motion is not finite there, or that it moves no mass beyond rounding, or inertia beyond the range of
   /// numbers.
   std::string why;
+  /// It moves mass, but not together with others, as the first and last axis of a wrist in one line do against each
+  /// other: elsewhere the equations may be solved.
+  bool together = false;
 };
 /// The first at a state; nothing where there is none. Inertia is looked at of at most `largest_examined` speeds.
 std::optional<UnsolvableRate> unsolvable_rate(const Model& model, const EquationsOfMotion& equations,

@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "blade.hpp"
 #include "withy/core/analysis/between_instants.hpp"
@@ -160,6 +163,23 @@ TEST(ConstantModes, of_one_frequency_are_each_of_one_part) {
       EXPECT_EQ(std::abs(mode.shape[1 - mode.dominant]), 0);
     }
   }
+}
+
+/// Of stiffnesses that are far below one, as micrometres have them.
+TEST(Blades, AreAlikeByTheirStiffnessWhateverItsSize) {
+  std::string bodies =
+      "format: withy/1\ntime: {end: 1}\nbodies:\n  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}\n";
+  std::string hinges = "hinges:\n  shaft: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}\n";
+  for (const std::string name : {"a", "b", "c", "d"}) {
+    bodies += "  " + name + ": {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: " +
+              (name == "d" ? "2e-12" : "1e-12") + ", modes: 1}}\n";
+    hinges += "  of_" + name + ": {type: weld, parent: hub, child: " + name + "}\n";
+  }
+  const AnalysedScene scene(bodies + hinges, "quadratic");
+  const std::vector<Blades> found = equal_branches(*scene.scene.model, {});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].names, (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_THROW(equal_branches(*scene.scene.model, {"a", "b", "d"}), std::invalid_argument);
 }
 
 }  // namespace

@@ -197,6 +197,17 @@ TEST(Plans, DeriveValuesFromThoseDerivedBefore) {
               HasSubstr("\"gravity.1\" is a part of \"gravity\""));
 }
 
+/// Where a value elsewhere is wrong, quantities have not been read as numbers, which is no trouble of theirs.
+TEST(Plans, SayNothingOfQuantitiesWhereAnotherValueIsWrong) {
+  const PlanFolder folder;
+  const std::string derived = "derived: {gravity.0: 3 * bodies.rod.mass}\n";
+  const std::string said =
+      folder.errors("vary: {bodies.rod.mass: {grid: [1.5 kg, 2]}, gravity.1: {grid: [-9, -x]}}\n" + derived);
+  EXPECT_THAT(said, AllOf(HasSubstr("/gravity/1: got \"-x\""), testing::Not(HasSubstr("as plain numbers"))));
+  EXPECT_THAT(folder.errors("vary: {name: {grid: [one, two]}}\nderived: {gravity.0: 3 * name}\n"),
+              HasSubstr("\"name\" varies, but not as plain numbers"));
+}
+
 /// Two paths may lead into each other only where neither takes away what the other sets.
 TEST(Plans, RefuseWhatAnotherValueWouldReplace) {
   const PlanFolder folder;

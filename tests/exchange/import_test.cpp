@@ -84,7 +84,25 @@ TEST(Import, APartThatMovesNeedsWhatItsJointMoves) {
   EXPECT_EQ(f.size(), 2U);
 }
 
-/// YAML reads a bare `null` as no name.
+/// Its wrist stands in one line in the state of the file alone: the scene is good elsewhere.
+TEST(Import, JointsThatMoveNoMassTogetherAreRemarkedUpon) {
+  const auto joint = [](const std::string& name, const std::string& parent, const std::string& child,
+                        const std::string& axis) {
+    return "<joint name='" + name + "' type='continuous'><parent link='" + parent + "'/><child link='" + child +
+           "'/><axis xyz='" + axis + "'/></joint>\n";
+  };
+  const Scratch file(".urdf",
+                     "<robot name='wrist'><link name='a'/><link name='b'/><link name='c'/><link name='d'><inertial>"
+                     "<origin xyz='0.1 0 0.1'/><mass value='1'/><inertia ixx='0.1' iyy='0.1' izz='0.1'/></inertial>"
+                     "</link>" +
+                         joint("roll", "a", "b", "0 0 1") + joint("pitch", "b", "c", "0 1 0") +
+                         joint("turn", "c", "d", "0 0 1") + "</robot>");
+  EXPECT_THAT(imported({file.file(), {}, false, 0, 0}).remarks,
+              testing::ElementsAre(testing::AllOf(HasSubstr("no run begins in the state that the scene has"),
+                                                  HasSubstr("'roll'"), HasSubstr("'turn'"))));
+}
+
+/// YAML reads a bare `null` as no name, and others as no text.
 TEST(Import, NamesThatAreNoneInScenesAreChanged) {
   const Scratch file(".urdf",
                      "<robot name='null'><link name='a'/><link name='NULL'><inertial><mass value='1'/><inertia ixx='1' "
@@ -93,6 +111,14 @@ TEST(Import, NamesThatAreNoneInScenesAreChanged) {
   const ImportedScene scene = imported({file.file(), {}, false, 0, 0});
   EXPECT_THAT(scene.remarks,
               testing::ElementsAre("link \"NULL\" is called _NULL here", "joint \"null\" is called _null here"));
+  for (const std::string word : {"true", "True", "TRUE", "false", "False", "FALSE"}) {
+    const Scratch robot(".urdf", "<robot name='r'><link name='a'/><link name='" + word +
+                                     "'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>"
+                                     "<joint name='j' type='continuous'><parent link='a'/><child link='" +
+                                     word + "'/></joint></robot>");
+    EXPECT_THAT(imported({robot.file(), {}, false, 0, 0}).remarks,
+                testing::ElementsAre("link \"" + word + "\" is called _" + word + " here"));
+  }
 }
 
 TEST(Import, ErrorsOfWhatStandsBesideHaveTheirPlacesThere) {

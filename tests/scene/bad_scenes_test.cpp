@@ -100,6 +100,10 @@ const BadScene bad_scenes[] = {
     {"zero_length", "length: 0.9", "length: 0", "13:13: /bodies/boom/length: got 0; need finite > 0 [m]"},
     {"negative_stiffness", "stiffness: 112", "stiffness: -112",
      "15:28: /bodies/boom/bending_y/stiffness: got -112; need finite > 0 [N m^2]"},
+    {"triangle_inequality_of_a_grain", "[0.01, 0.01, 0.01, 0, 0, 0]", "[1e-12, 1e-12, 3e-12, 0, 0, 0]",
+     "8:14: /bodies/hub/inertia: no distribution of mass has this inertia about its centre of mass; need principal "
+     "moments >= 0, none above the sum of the other two (triangle inequality; here the greatest exceeds the sum by "
+     "1e-12 kg m^2)"},
     {"triangle_inequality", "[0.01, 0.01, 0.01, 0, 0, 0]", "[1, 1, 3, 0, 0, 0]", "8:14: /bodies/hub/inertia: "},
     {"too_few_numbers", "[0, -9.81, 0]", "[0, -9.81]",
      "2:10: /gravity: got a list of 2; need a list of 3 finite numbers [m/s^2]"},
@@ -207,9 +211,9 @@ const BadScene bad_scenes[] = {
     {"frame_named_as_a_station", "    damping_ratio: 0.01", "    frames: {tip: {position: [1, 0, 0]}}",
      "16:14: /bodies/boom/frames/tip: 'tip' is a station of the body already; choose another name"},
     {"frame_at_an_unknown_station", "    damping_ratio: 0.01", "    frames: {f: {at: middle}}",
-     R"(16:22: /bodies/boom/frames/f/at: no station "middle"; need root, tip, or a coordinate x from 0 to 0.900000 m)"},
+     R"(16:22: /bodies/boom/frames/f/at: no station "middle"; need root, tip, or a coordinate x from 0 to 0.9 m)"},
     {"frame_beyond_the_tip", "    damping_ratio: 0.01", "    frames: {f: {at: 0.95}}",
-     "16:22: /bodies/boom/frames/f/at: no station 0.95; need root, tip, or a coordinate x from 0 to 0.900000 m"},
+     "16:22: /bodies/boom/frames/f/at: no station 0.95; need root, tip, or a coordinate x from 0 to 0.9 m"},
     {"orientation_not_a_unit_quaternion", "{position: [0.0762, 0, 0]}", "{orientation: [1, 1, 0, 0]}",
      "10:26: /bodies/hub/frames/out/orientation: got a quaternion of norm 1.4142135623730951; need norm 1 within "
      "1e-06"},

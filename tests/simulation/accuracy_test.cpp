@@ -118,5 +118,29 @@ TEST(Accuracy, a_hinge_that_turns_nothing_is_refused_and_its_body_named) {
               AllOf(HasSubstr("singular"), HasSubstr("pin.0"), HasSubstr("'bob'")));
 }
 
+/// A wrist without masses but at its end: in one line its first and last axis turn against each other and move nothing.
+std::string wrist(const std::string& bend) {
+  return "format: withy/1\ntime: {end: 1}\nbodies: {a: {type: rigid, mass: 0}, b: {type: rigid, mass: 0}, "
+         "c: {type: rigid, mass: 1, center_of_mass: [0.1, 0, 0.1], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}\nhinges:\n"
+         "  roll: {type: revolute, axis: [0, 0, 1], parent: world, child: a}\n"
+         "  pitch: {type: revolute, axis: [0, 1, 0], parent: a, child: b}\n"
+         "  turn: {type: revolute, axis: [0, 0, 1], parent: b, child: c}\n"
+         "initial: {hinges: {pitch: {position: [" +
+         bend + "]}}}\n";
+}
+
+TEST(Accuracy, hinges_that_move_no_mass_together_are_named) {
+  const test::Made straight(wrist("0"));
+  const auto rate = unsolvable_rate(*straight.scene.model, *straight.equations, straight.scene.initial);
+  ASSERT_TRUE(rate);
+  EXPECT_TRUE(rate->together);
+  EXPECT_THAT(rate->why, AllOf(HasSubstr("singular here"), HasSubstr("50 % hinge 'roll'"),
+                               HasSubstr("50 % hinge 'turn'"), HasSubstr("begin elsewhere")));
+  EXPECT_EQ(unattainable(*straight.scene.model, *straight.equations, straight.scene.initial, 1e-6), rate->why);
+  const test::Made bent(wrist("0.5"));
+  EXPECT_FALSE(unsolvable_rate(*bent.scene.model, *bent.equations, bent.scene.initial));
+  EXPECT_EQ(unattainable(*bent.scene.model, *bent.equations, bent.scene.initial, 1e-6), "");
+}
+
 }  // namespace
 }  // namespace withy

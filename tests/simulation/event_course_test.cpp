@@ -55,6 +55,23 @@ events:
   EXPECT_LT(run.summary.energy_drift, 1e-9);
 }
 
+/// A block of 2 kg that a force along its slide moves from t = 1 s on.
+std::string pushed(const std::string& setting) {
+  return R"(format: withy/1
+gravity: [0, 0, 0]
+time: {end: 3, output: 1}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [0, 1, 0], parent: world, child: block}}
+loads: {push: {type: force, frame: block, law: constant, value: [1, 0, 3]}}
+events: {more: {at: 1, do: {set: ")" +
+         setting + "\"}}}\n";
+}
+
+TEST(ActingEvents, set_components_of_lists_by_their_index) {
+  EXPECT_NEAR(ActedRun(pushed("loads.push.value.1=4")).rate("slide"), 4, 1e-9);
+  EXPECT_NEAR(ActedRun(pushed("loads.push.value=[1, 4, 3]")).rate("slide"), 4, 1e-9);
+}
+
 TEST(ActingEvents, at_one_instant_go_in_the_order_of_the_file_and_those_without_time_between_them_end_the_run) {
   const std::string both = R"(time: {end: 1, output: 0.5}
 events:
@@ -113,6 +130,11 @@ std::string problem_of(const std::string& text) {
     return e.what();
   }
   return {};
+}
+
+TEST(ActingEvents, tell_of_an_index_that_a_list_does_not_have) {
+  EXPECT_THAT(problem_of(pushed("loads.push.value.3=4")),
+              HasSubstr("/events/more/do/set: of /loads/push/value/3: got index \"3\"; need 0 to 2"));
 }
 
 TEST(ActingEvents, that_cannot_be_are_each_told_with_their_place) {
