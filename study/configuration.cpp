@@ -128,11 +128,11 @@ void Configuration::rest_loops() {
   constexpr double resting = 1e-6;
   const std::vector<bool> in_loops = speeds_in_loops(prepared_.model());
   Eigen::Map<Eigen::VectorXd> speeds(state_.y.data() + layout().positions, static_cast<Eigen::Index>(layout().speeds));
-  const Eigen::VectorXd closed = dynamics_.whole(state_.y, speeds);
-  if (!closed.allFinite())
-    throw InputError(prepared_.scene.file +
-                     ": the closed loops are in a singular configuration, about which there are no small motions: "
-                     "start from another state");
+  if (dynamics_.singular(state_.y))
+    throw InputError(
+        prepared_.scene.file +
+        ": the closed loops are in a singular configuration, about which there are no small motions: start from "
+        "another state. A straight beam between supports that cannot come nearer needs 'extension'");
   for (std::size_t s = 0; s < in_loops.size(); ++s) {
     if (!in_loops[s]) continue;
     double& rate = speeds[static_cast<Eigen::Index>(s)];

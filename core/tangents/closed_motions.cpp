@@ -18,6 +18,10 @@ namespace {
 /// it; and what is left of a speed that closes loops well.
 constexpr double independent = 1e-6, closes_well = 0.1;
 
+/// [rad], and in lengths of the loop: how far at a time motions are followed, and what follows may have to be moved
+/// then.
+constexpr double near_by = 0.2;
+
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Directions in the space of the gaps that are closed already.
@@ -72,8 +76,10 @@ void ClosedMotions::choose(const Eigen::MatrixXd& J, const std::vector<bool>& he
   };
   for (const double share : {closes_well, independent}) take(layout.hinges, share);
   for (const double share : {closes_well, independent}) take(layout.bodies, share);
-  for (std::size_t s = 0; s < follows_.size(); ++s)
+  for (std::size_t s = 0; s < follows_.size(); ++s) {
     (follows_[s] ? followers_ : others_).push_back(static_cast<Eigen::Index>(s));
+    if (in_loops_[s] && !held[s] && !follows_[s]) moving_.push_back(static_cast<Eigen::Index>(s));
+  }
 }
 
 ClosedMotions::Seen ClosedMotions::see(std::span<const double> y) const {
@@ -123,20 +129,18 @@ ClosedMotions::Changes ClosedMotions::changes(std::span<const double> y, const A
   }
   if (followers_.empty()) return by;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(at.J(Eigen::all, followers_));
-  const Eigen::Map<const Eigen::VectorXd> reaches(reaches_.data(), n);
   for (const Eigen::Index i : others_) {
     if (!in_loops_[static_cast<std::size_t>(i)]) continue;
     const auto look = [&](double h) {
       std::vector<double> moved(y.begin(), y.end());
       const Eigen::VectorXd delta = h * at.Z.col(i);
-      displace(model_, moved, {delta.data(), static_cast<std::size_t>(n)});
+      withy::displace(model_, moved, {delta.data(), static_cast<std::size_t>(n)});
       const Eigen::MatrixXd J = see(moved).J;
       Eigen::VectorXd both(n + J.rows());
       both << J.transpose() * multipliers, J * accelerations;
       return both;
     };
-    const double reach = at.Z.col(i).cwiseAbs().cwiseProduct(reaches).maxCoeff();
-    const double step = far * length_ / reach;
+    const double step = far * length_ / reach(at.Z.col(i));
     const Eigen::VectorXd slope = central_difference(look, step);
     by.efforts.col(i) = slope.head(n);
     by.accelerations(followers_, i) = -factors.solve(slope.tail(at.J.rows()));
@@ -144,23 +148,78 @@ ClosedMotions::Changes ClosedMotions::changes(std::span<const double> y, const A
   return by;
 }
 
-void ClosedMotions::close(std::span<double> y) const {
-  constexpr int most = 30;
-  const double rounding = 1e-15 * length_;
-  double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most; ++i) {
+double ClosedMotions::reach(const Eigen::VectorXd& delta) const {
+  double most = 0;
+  for (std::size_t s = 0; s < in_loops_.size(); ++s)
+    if (in_loops_[s]) most = std::max(most, reaches_[s] * std::abs(delta[static_cast<Eigen::Index>(s)]));
+  return most;
+}
+
+bool ClosedMotions::close(std::span<double> y) const {
+  constexpr int most = 12;
+  const double rounding = 1e-15 * length_, near = near_by * length_;
+  double before = std::numeric_limits<double>::infinity(), moved = 0;
+  for (int i = 0; i < most && moved <= near; ++i) {
     const Seen now = see(y);
     const double left = now.gaps.cwiseAbs().maxCoeff();
     // Of redundant equations, and where nothing can follow, what is left is rounding already.
-    if (left <= rounding || (left <= 1e5 * rounding && !(left < 0.5 * before))) return;
-    if (!std::isfinite(left) || followers_.empty()) break;
+    if (left <= rounding || (left <= 1e5 * rounding && !(left < 0.5 * before))) return true;
+    if (!std::isfinite(left) || followers_.empty()) return false;
     before = left;
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(now.J(Eigen::all, followers_));
     Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(follows_.size()));
     change(followers_) = -factors.solve(now.gaps);
-    displace(model_, y, {change.data(), follows_.size()});
+    moved += reach(change);
+    withy::displace(model_, y, {change.data(), follows_.size()});
+  }
+  return false;
+}
+
+void ClosedMotions::displace(std::span<double> y, const Eigen::VectorXd& delta) const {
+  constexpr int most_parts = 100;
+  Eigen::VectorXd left = delta;
+  for (int part = 0; part < most_parts; ++part) {
+    const Eigen::MatrixXd Z = at(y).Z;
+    if (!Z.allFinite()) break;
+    const Eigen::VectorXd all = Z * left;
+    const double share = std::min(1.0, near_by * length_ / reach(all));
+    const Eigen::VectorXd step = share * all;
+    withy::displace(model_, y, {step.data(), follows_.size()});
+    if (!close(y)) break;
+    if (share == 1) return;
+    left *= 1 - share;
   }
   std::fill(y.begin(), y.end(), nan);
+}
+
+Eigen::Index ClosedMotions::rank(Eigen::MatrixXd J) const {
+  for (Eigen::Index i = 0; i < J.cols(); ++i) J.col(i) /= reaches_[static_cast<std::size_t>(i)];
+  if (J.isZero(0)) return 0;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(J);
+  factors.setThreshold(independent);
+  return factors.rank();
+}
+
+bool ClosedMotions::singular(std::span<const double> y) const {
+  constexpr double beside = 1e-3;  // in lengths, and [rad]
+  const At here = at(y);
+  if (!here.Z.allFinite()) return true;
+  const Eigen::Index independent_here = rank(here.J);
+  const auto other_beside = [&](const Eigen::VectorXd& delta) {
+    const double far = reach(here.Z * delta);
+    if (far == 0) return false;
+    std::vector<double> moved(y.begin(), y.end());
+    displace(moved, beside * length_ / far * delta);
+    return std::isnan(moved[0]) || rank(see(moved).J) > independent_here;
+  };
+  const auto n = static_cast<Eigen::Index>(follows_.size());
+  Eigen::VectorXd mixed = Eigen::VectorXd::Zero(n);
+  for (const Eigen::Index i : moving_) {
+    const Eigen::VectorXd one = Eigen::VectorXd::Unit(n, i);
+    if (other_beside(one) || other_beside(-one)) return true;
+    mixed += (1 + std::cos(static_cast<double>(i)) / 2) / reach(here.Z * one) * one;
+  }
+  return other_beside(mixed);
 }
 
 }  // namespace withy

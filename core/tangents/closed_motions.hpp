@@ -51,8 +51,13 @@ class ClosedMotions {
   /// \param accelerations Z a
   [[nodiscard]] Changes changes(std::span<const double> y, const At& at, const Eigen::VectorXd& multipliers,
                                 const Eigen::VectorXd& accelerations) const;
-  /// Moves what follows until the loops are closed. Where that fails y is not finite.
-  void close(std::span<double> y) const;
+  /// Moves y by δ and what follows with it, so far at a time that it does not come to another way of closing the loops.
+  /// Where the loops cannot be closed on the way, or it is too long, y is not finite. \param delta of all speeds; those
+  /// of what follows do not count
+  void displace(std::span<double> y, const Eigen::VectorXd& delta) const;
+  /// Whether more equations are independent beside a state than at it, or the loops cannot be closed there: the motions
+  /// about it are not those of a few speeds.
+  [[nodiscard]] bool singular(std::span<const double> y) const;
 
  private:
   struct Seen {
@@ -61,14 +66,21 @@ class ClosedMotions {
   };
   [[nodiscard]] Seen see(std::span<const double> y) const;
   void choose(const Eigen::MatrixXd& J, const std::vector<bool>& held);
+  /// Moves what follows until the loops are closed. \returns whether that is near by
+  bool close(std::span<double> y) const;
+  /// How far displacements move anything of the loops, turns counted in lengths of these [m].
+  [[nodiscard]] double reach(const Eigen::VectorXd& delta) const;
+  /// Independent closing equations.
+  [[nodiscard]] Eigen::Index rank(Eigen::MatrixXd J) const;
 
   const Model& model_;
   std::shared_ptr<const EquationsOfMotion> equations_;
   const ClosedLoops& loops_;
-  double length_;  ///< of the loops, as length_of_loops
+  double length_;                ///< of the loops, as length_of_loops
   std::vector<double> reaches_;  ///< reaches_of_speeds
   std::vector<bool> in_loops_, follows_;
   std::vector<Eigen::Index> followers_, others_;
+  std::vector<Eigen::Index> moving_;  ///< of the others those that are not held and change the shape of a loop
 };
 
 }  // namespace withy

@@ -24,6 +24,8 @@ void TangentDynamics::keep_closed(std::shared_ptr<const EquationsOfMotion> equat
     closed_ = std::make_shared<const ClosedMotions>(*model_, std::move(equations), state, held);
 }
 
+bool TangentDynamics::singular(std::span<const double> y) const { return closed_ && closed_->singular(y); }
+
 std::vector<bool> TangentDynamics::follows() const {
   return closed_ ? closed_->follows() : std::vector<bool>(model_->layout().speeds, false);
 }

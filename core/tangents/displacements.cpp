@@ -26,9 +26,10 @@ void displace(const Model& model, std::span<double> y, std::span<const double> d
 }
 
 void TangentDynamics::displace(std::span<double> y, const Eigen::VectorXd& delta) const {
-  const Eigen::VectorXd all = whole(y, delta);
-  withy::displace(*model_, y, {all.data(), model_->layout().speeds});
-  if (closed_) closed_->close(y);
+  if (closed_)
+    closed_->displace(y, delta);
+  else
+    withy::displace(*model_, y, {delta.data(), model_->layout().speeds});
 }
 
 Eigen::MatrixXd TangentDynamics::drift(std::span<const double> y) const {

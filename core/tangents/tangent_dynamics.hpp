@@ -81,6 +81,8 @@ class TangentDynamics {
   /// \param equations of the same model and formulation; of loops, ClosedLoops \param held one a speed
   void keep_closed(std::shared_ptr<const EquationsOfMotion> equations, const State& state,
                    const std::vector<bool>& held);
+  /// ClosedMotions::singular; false of trees.
+  [[nodiscard]] bool singular(std::span<const double> y) const;
   /// Speeds that follow others, one a speed; none before keep_closed.
   [[nodiscard]] std::vector<bool> follows() const;
   /// Speeds or accelerations with those of what follows, and efforts on all speeds as they act on the others.

@@ -283,6 +283,58 @@ TEST(ClosedMotions, ASampledControllerOfWhatFollowsHasItsPoles) {
     EXPECT_LT(std::abs(third[k].eigenvalue - first[k].eigenvalue), 1e-8 * std::abs(first[k].eigenvalue));
 }
 
+TEST(ClosedMotions, KeepTheWayInWhichLoopsAreClosed) {
+  // A rocker of 0.8, which reaches from -1.745 to -0.846 rad with the links on this side, and as far on the other; they
+  // cannot come from one to the other.
+  const std::string linkage = R"(
+gravity: [0, -9.81, 0]
+bodies:
+  rocker: {type: rigid, mass: 1, center_of_mass: [0.4, 0, 0], inertia: [0.001, 0.02, 0.02, 0, 0, 0], frames: {pin: {position: [0.8, 0, 0]}}}
+  coupler: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [0.001, 0.2, 0.2, 0, 0, 0], frames: {pin: {position: [1, 0, 0]}}}
+  crank: {type: rigid, mass: 1, center_of_mass: [0.15, 0, 0], inertia: [0.001, 0.02, 0.02, 0, 0, 0], frames: {pin: {position: [0.3, 0, 0]}}}
+hinges:
+  first: {type: revolute, axis: [0, 0, 1], parent: world, child: rocker}
+  second: {type: revolute, axis: [0, 0, 1], parent: rocker.pin, child: coupler}
+  third: {type: revolute, axis: [0, 0, 1], parent: world, child: crank, offset: {position: [0.9, 0, 0]}}
+constraints: {loop: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: coupler.pin, b: crank.pin}}
+initial: {hinges: {first: {position: [-1.5]}}, guess: {hinges: {second: {position: [2.49]}, third: {position: [3.0]}}}}
+)";
+  const Prepared prepared = scene_of(linkage);
+  const SteadyState found = find_equilibrium(at_start(prepared), {}, test::plugins()).steady;
+  ASSERT_TRUE(found.converged);
+  // Where weight is least on this side: dV/dθ = 0 of the heights of three centres of mass.
+  EXPECT_NEAR(found.state.y[0], -1.540, 1e-3);
+}
+
+TEST(ClosedMotions, AreRefusedInSingularConfigurations) {
+  const auto refused = [](const std::string& text) {
+    try {
+      at_start(scene_of(text));
+    } catch (const InputError& e) {
+      return std::string(e.what()).find("singular configuration") != std::string::npos;
+    }
+    return false;
+  };
+  const auto at_angle = [](const std::string& degrees) {
+    return test::replaced(carried_on_cranks,
+                          "initial: {hinges: {first: {position: [\"-60 deg\"]}}, guess: {hinges: {second: {position: "
+                          "[\"60 deg\"]}, third: {position: [\"-60 deg\"]}}}}",
+                          "initial: {hinges: {first: {position: [\"" + degrees +
+                              " deg\"]}}, guess: {hinges: {third: {position: [\"" + degrees + " deg\"]}}}}");
+  };
+  EXPECT_TRUE(refused(at_angle("0"))) << "links in one line go on in two ways";
+  EXPECT_FALSE(refused(at_angle("-1")));
+  // Welded at both ends it cannot bend without shortening.
+  const std::string fixed = test::replaced(
+      R"(bodies: {beam: {type: beam, length: 2, mass_per_length: 3, bending_y: {stiffness: 500, modes: 4}EXTENSION}}
+hinges: {root: {type: weld, parent: world, child: beam}}
+constraints: {end: {type: hinge, hinge: weld, a: world, b: beam.tip, offset: {position: [2, 0, 0]}}}
+)",
+      "EXTENSION", ", extension: {stiffness: 1e6, modes: 2}");
+  EXPECT_FALSE(refused(fixed));
+  EXPECT_TRUE(refused(test::replaced(fixed, ", extension: {stiffness: 1e6, modes: 2}", "")));
+}
+
 TEST(ClosedMotions, AreRefusedWhereLoopsMove) {
   const auto message = [](const auto& run) -> std::string {
     try {
