@@ -70,7 +70,19 @@ std::vector<std::string> Mismatch::settings(const VectorXd& z) const {
   return all;
 }
 
-std::vector<MatchedRun> Mismatch::run(const std::vector<std::vector<double>>& points) {
+std::vector<MatchedRun> Mismatch::run(const std::vector<VectorXd>& points) {
+  std::vector<std::vector<double>> all;
+  for (const VectorXd& z : points) all.push_back(values(z));
+  std::vector<MatchedRun> made = run_with(all);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (!made[k].ok()) continue;
+    const double residual = root_mean_square(residuals(made[k]));
+    if (!nearest || residual < nearest->residual) nearest = NearestRun{settings(points[k]), residual};
+  }
+  return made;
+}
+
+std::vector<MatchedRun> Mismatch::run_with(const std::vector<std::vector<double>>& points) {
   std::vector<SceneValues> scenes;
   for (const std::vector<double>& x : points) scenes.push_back(with_values(scene_.values, tuned, x));
   std::vector<MatchedRun> made = matched_runs(scenes, registry_, data, jobs_, control_);
@@ -91,11 +103,9 @@ VectorXd Mismatch::residuals(const MatchedRun& run) const {
 }
 
 bool Mismatch::evaluate(const VectorXd& z, VectorXd& r) {
-  const MatchedRun made = run({values(z)}).front();
+  const MatchedRun made = run({z}).front();
   if (!made.ok()) return false;
   r = residuals(made);
-  if (const double residual = root_mean_square(r); !nearest || residual < nearest->residual)
-    nearest = NearestRun{settings(z), residual};
   return true;
 }
 
@@ -104,9 +114,9 @@ bool Mismatch::derivatives(const VectorXd& z, const std::vector<std::size_t>& of
     std::size_t run;
     double at;
   };
-  std::vector<std::vector<double>> points = {values(z)};
+  std::vector<VectorXd> points = {z};
   for (const std::size_t i : of)
-    for (const double side : {1.0, -1.0}) points.push_back(values(moved(z, i, side * step)));
+    for (const double side : {1.0, -1.0}) points.push_back(moved(z, i, side * step));
   const std::vector<MatchedRun> made = run(points);
   if (!made[0].ok()) return false;
   J.resize(static_cast<Index>(data.count()), static_cast<Index>(of.size()));

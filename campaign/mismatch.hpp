@@ -22,8 +22,10 @@ class Mismatch {
 
   [[nodiscard]] bool stopped() const { return control_.stop(); }
   [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
-  /// Runs with these values, side by side.
-  std::vector<MatchedRun> run(const std::vector<std::vector<double>>& points);
+  /// Runs at these points, side by side; the nearest to the data is kept.
+  std::vector<MatchedRun> run(const std::vector<Eigen::VectorXd>& points);
+  /// The same with values that are no point's.
+  std::vector<MatchedRun> run_with(const std::vector<std::vector<double>>& points);
   /// Weighted residuals of a run where something was measured, column by column.
   [[nodiscard]] Eigen::VectorXd residuals(const MatchedRun& run) const;
   /// Those of the run at z; false where there is none.
@@ -40,7 +42,7 @@ class Mismatch {
   const Measured data;
   std::size_t runs = 0, failed = 0;
   std::string last_failure;
-  /// What was nearest to the data of all that evaluate() ran; empty where none of its runs came to an end.
+  /// What was nearest to the data of all that run() made; empty where none of its runs came to an end.
   std::optional<NearestRun> nearest;
 
  private:

@@ -31,7 +31,7 @@ class TuneSearch {
 
   TuneResult found() {
     result_.data = m_.data;
-    const MatchedRun start = m_.run({m_.values(z_)}).front();
+    const MatchedRun start = m_.run({z_}).front();
     if (start.ok()) result_.before = root_mean_square(m_.residuals(start));
     if (start.ok() || question_.starts > 1)
       search();
@@ -115,12 +115,12 @@ class TuneSearch {
     constexpr std::size_t draws = 10;
     std::vector<std::pair<double, VectorXd>> points;
     for (std::size_t k = 1; k < question_.starts && !m_.stopped(); ++k) {
-      std::vector<std::vector<double>> drawn_values;
+      std::vector<VectorXd> tried;
       for (std::size_t d = 0; d < draws; ++d) {
-        points.emplace_back(std::numeric_limits<double>::infinity(), drawn(draws * k + d));
-        drawn_values.push_back(m_.values(points.back().second));
+        tried.push_back(drawn(draws * k + d));
+        points.emplace_back(std::numeric_limits<double>::infinity(), tried.back());
       }
-      const std::vector<MatchedRun> runs = m_.run(drawn_values);
+      const std::vector<MatchedRun> runs = m_.run(tried);
       for (std::size_t d = 0; d < draws; ++d)
         if (runs[d].ok()) points[points.size() - draws + d].first = root_mean_square(m_.residuals(runs[d]));
     }
@@ -194,7 +194,7 @@ class TuneSearch {
 
 void TuneSearch::report(const MatchedRun& start) {
   add_parameters();
-  std::vector<MatchedRun> last = m_.run({result_.values()});
+  std::vector<MatchedRun> last = m_.run_with({result_.values()});
   if (!last.front().ok()) {
     result_.trouble = "the run with the fitted values fails: " + last.front().failure;
     return;

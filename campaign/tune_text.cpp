@@ -119,8 +119,8 @@ std::string search_text(const TuneResult& result) {
 
 std::string interrupted_text(const TuneResult& result) {
   if (!result.nearest) return {};
-  std::string text = fmt::format("nearest to the data of {} runs, with a weighted residual of {:.4g}", result.runs,
-                                 result.nearest->residual);
+  std::string text = fmt::format("nearest to the data of {} run{}, with a weighted residual of {:.4g}", result.runs,
+                                 result.runs == 1 ? "" : "s", result.nearest->residual);
   if (result.before > 0) text += fmt::format(" ({:.4g} with the scene's values)", result.before);
   text += ", came";
   for (const std::string& setting : result.nearest->settings) text += fmt::format(" --set '{}'", setting);
