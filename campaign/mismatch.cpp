@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <thread>
 
@@ -42,6 +43,20 @@ std::optional<double> neighbours(const MeasuredColumn& column, const std::vector
   return worth ? std::optional(correlation) : std::nullopt;
 }
 
+/// Whether rounding of a run shows in a tenth of what was measured of a column, so that differences of runs hide what
+/// parameters do. An instant that rounding moves past a row changes one row alone.
+bool felt_by(const MeasuredColumn& column, const std::vector<double>& run, const std::vector<double>& rounded,
+             double least) {
+  constexpr std::size_t tenth = 10;
+  std::size_t count = 0, differ = 0;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    if (!std::isfinite(column.values[i])) continue;
+    ++count;
+    differ += std::abs(run[i] - rounded[i]) > least * column.deviation ? 1 : 0;
+  }
+  return tenth * differ > count;
+}
+
 }  // namespace
 
 double root_mean_square(const VectorXd& r) { return r.norm() / std::sqrt(static_cast<double>(r.size())); }
@@ -74,12 +89,33 @@ std::vector<MatchedRun> Mismatch::run(const std::vector<VectorXd>& points) {
   std::vector<std::vector<double>> all;
   for (const VectorXd& z : points) all.push_back(values(z));
   std::vector<MatchedRun> made = run_with(all);
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (!made[k].ok()) continue;
-    const double residual = root_mean_square(residuals(made[k]));
-    if (!nearest || residual < nearest->residual) nearest = NearestRun{settings(points[k]), residual};
-  }
+  for (std::size_t k = 0; k < points.size(); ++k) keep_nearest(points[k], made[k]);
   return made;
+}
+
+void Mismatch::keep_nearest(const VectorXd& z, const MatchedRun& run) {
+  if (!run.ok()) return;
+  const double residual = root_mean_square(residuals(run));
+  if (!nearest || residual < nearest->residual) nearest = NearestRun{settings(z), residual};
+}
+
+MatchedRun Mismatch::begin(const VectorXd& z, std::vector<std::string>& rounding) {
+  // So little that of a smooth function no more than rounding is seen.
+  constexpr double beside = 1e-13;
+  VectorXd near = z;
+  for (std::size_t i = 0; i < tuned.size(); ++i) near = moved(near, i, beside);
+  std::vector<MatchedRun> made = run_with({values(z), values(near)});
+  MatchedRun& run = made[0];
+  for (std::size_t c = data.columns.size(); made[1].ok() && run.ok() && c-- > 0;) {
+    const MeasuredColumn& column = data.columns[c];
+    // What is over steps is to be a hundredth of what the parameters do.
+    if (column.deviation_given || !felt_by(column, run.columns[c], made[1].columns[c], 0.01 * step_)) continue;
+    rounding.insert(rounding.begin(), column.name);
+    data.columns.erase(data.columns.begin() + static_cast<std::ptrdiff_t>(c));
+    run.columns.erase(run.columns.begin() + static_cast<std::ptrdiff_t>(c));
+  }
+  keep_nearest(z, run);
+  return std::move(run);
 }
 
 std::vector<MatchedRun> Mismatch::run_with(const std::vector<std::vector<double>>& points) {

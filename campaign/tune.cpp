@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "withy/campaign/least_squares.hpp"
 #include "withy/campaign/mismatch.hpp"
 #include "withy/campaign/random.hpp"
 #include "withy/results/result_columns.hpp"
+#include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -21,6 +23,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Indices = std::vector<std::size_t>;
 
+/// Why a fit would have no residuals to spare; empty where it has.
+std::string too_few(const Measured& data, std::size_t parameters) {
+  if (data.count() > parameters) return {};
+  return fmt::format("{}: {} measured values; need more than the {} parameters", data.file, data.count(), parameters);
+}
+
 /// One call of `tune` after its input has been read.
 class TuneSearch {
  public:
@@ -30,8 +38,8 @@ class TuneSearch {
   }
 
   TuneResult found() {
+    const MatchedRun start = begun();
     result_.data = m_.data;
-    const MatchedRun start = m_.run({z_}).front();
     if (start.ok()) result_.before = root_mean_square(m_.residuals(start));
     if (start.ok() || question_.starts > 1)
       search();
@@ -45,6 +53,21 @@ class TuneSearch {
   }
 
  private:
+  /// The scene's own run, with the columns that can be compared. \throws study::InputError where what is left of the
+  /// data is not what was asked for
+  MatchedRun begun() {
+    std::vector<std::string> rounding;
+    MatchedRun start = m_.begin(z_, rounding);
+    if (rounding.empty()) return start;
+    if (!question_.outputs.empty() || m_.data.columns.empty())
+      throw study::InputError(fmt::format(
+          "{}:1:1: rounding alone changes {}, whose range cannot be weighed by: give the standard deviation "
+          "of the measurement, --deviations {}=…",
+          m_.data.file, listed(rounding), rounding.front()));
+    for (const std::string& name : rounding) m_.data.ignored.push_back(name + " (changes by rounding alone)");
+    if (const std::string few = too_few(m_.data, m_.tuned.size()); !few.empty()) throw study::InputError(few);
+    return start;
+  }
   void search() {
     look_for_undetermined();
     if (active_.empty()) {
@@ -299,9 +322,8 @@ TuneResult tune(const study::Prepared& scene, Registry& registry, const TuneQues
   Measured data = read_measured(
       {question.data, question.outputs, question.deviations, scene.scene.initial.time, end, question.text},
       results.columns(), problems);
-  if (problems.empty() && data.count() <= tuned.size())
-    problems.push_back(fmt::format("{}: {} measured values; need more than the {} parameters", question.data,
-                                   data.count(), tuned.size()));
+  if (problems.empty())
+    if (std::string few = too_few(data, tuned.size()); !few.empty()) problems.push_back(std::move(few));
   if (!problems.empty()) throw study::InputError(lines_of(problems));
   Mismatch mismatch(scene, registry, question, std::move(tuned), std::move(data));
   return TuneSearch(mismatch, question).found();
