@@ -272,6 +272,9 @@ void TuneSearch::add_deviations(const VectorXd& residuals) {
   }
   const MatrixXd C = covariance(s.J, variances);
   const VectorXd sigma = C.diagonal().cwiseSqrt(), singular = singular_values(s.J);
+  // Residuals of zero leave the correlations that equal ones would have.
+  const MatrixXd R = variances.maxCoeff() > 0 ? C : covariance(s.J, VectorXd::Ones(residuals.size()));
+  const VectorXd size = R.diagonal().cwiseSqrt();
   result_.singular_values.assign(singular.begin(), singular.end());
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto row = static_cast<Index>(k);
@@ -279,20 +282,21 @@ void TuneSearch::add_deviations(const VectorXd& residuals) {
     p.deviation = std::abs(p.tuned.slope(z_[static_cast<Index>(free[k])])) * sigma[row];
     std::vector<double>& line = result_.correlation.emplace_back();
     for (Index j = 0; j < C.cols(); ++j)
-      line.push_back(sigma[row] > 0 && sigma[j] > 0 ? C(row, j) / (sigma[row] * sigma[j]) : (row == j ? 1.0 : 0.0));
+      line.push_back(size[row] > 0 && size[j] > 0 ? R(row, j) / (size[row] * size[j]) : (row == j ? 1.0 : 0.0));
   }
 }
 
 /// Starts that came to the fitted values, within their deviations or a hundredth of their coordinates.
 void TuneSearch::count_agreeing() {
   constexpr double deviations = 3, share = 0.01;
-  for (const SearchEnd& end : result_.starts) {
+  for (SearchEnd& end : result_.starts) {
     bool same = std::isfinite(end.residual);
     for (std::size_t i = 0; i < result_.parameters.size(); ++i) {
       const FittedValue& p = result_.parameters[i];
       const double apart = std::abs(end.to[i] - p.value), slope = std::abs(p.tuned.slope(z_[static_cast<Index>(i)]));
       same = same && apart <= std::max(deviations * p.deviation.value_or(0), share * slope);
     }
+    end.agrees = same;
     result_.agreeing += same ? 1 : 0;
   }
 }

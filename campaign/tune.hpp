@@ -55,6 +55,7 @@ struct SearchEnd {
   std::vector<double> from, to;  ///< values in the units of the parameters
   double residual = 0;           ///< root of the mean square of weighted residuals
   bool converged = false;
+  bool agrees = false;  ///< it came to the fitted values
   std::string reason;
 };
 

@@ -109,7 +109,9 @@ std::string search_text(const TuneResult& result) {
   text += fmt::format("{} of {} starts came to this {}", result.agreeing, result.starts.size(),
                       best.converged ? "minimum" : "point");
   for (const SearchEnd& s : result.starts) {
-    if (!std::isfinite(s.residual) || s.residual < 1.01 * best.residual) continue;
+    // Residuals of rounding differ by themselves.
+    if (s.agrees || !std::isfinite(s.residual) || s.residual <= 1.01 * best.residual) continue;
+    if (best.residual == 0) return text + fmt::format("; the next lowest has a residual of {:.3g}.\n", s.residual);
     return text + fmt::format("; the next lowest has a residual {:.3g} times as large.\n", s.residual / best.residual);
   }
   return text + ".\n";

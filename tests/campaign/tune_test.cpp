@@ -297,6 +297,19 @@ TEST(Tune, StopsAtBoundsAndFindsTheLowestOfManyMinima) {
   EXPECT_LT(many.agreeing, 6);
 }
 
+// With data of its own equations a fit leaves rounding, which differs from start to start.
+TEST(Tune, StartsThatAgreeAreNoOtherMinima) {
+  TuneResult result;
+  result.data.times = {0, 1};
+  result.starts = {{{}, {}, 1e-12, true, true, "a"}, {{}, {}, 2e-12, true, true, "b"}};
+  result.agreeing = 2;
+  EXPECT_THAT(tune_text(result, "block"), HasSubstr("2 of 2 starts came to this minimum.\n"));
+  result.starts.push_back({{}, {}, 3e-6, true, false, "c"});
+  EXPECT_THAT(tune_text(result, "block"), HasSubstr("minimum; the next lowest has a residual 3e+06 times as large"));
+  result.starts.front().residual = 0;
+  EXPECT_THAT(tune_text(result, "block"), HasSubstr("minimum; the next lowest has a residual of 3e-06."));
+}
+
 TEST(Tune, GoesRoundRunsThatFail) {
   const TuneFolder folder;
   folder.measure({}, 1e-3, 2);
