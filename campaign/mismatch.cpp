@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <thread>
 
@@ -42,6 +43,20 @@ std::optional<double> neighbours(const MeasuredColumn& column, const std::vector
   return worth ? std::optional(correlation) : std::nullopt;
 }
 
+/// Whether rounding of a run shows in a tenth of what was measured of a column, so that differences of runs hide what
+/// parameters do. An instant that rounding moves past a row changes one row alone.
+bool felt_by(const MeasuredColumn& column, const std::vector<double>& run, const std::vector<double>& rounded,
+             double least) {
+  constexpr std::size_t tenth = 10;
+  std::size_t count = 0, differ = 0;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    if (!std::isfinite(column.values[i])) continue;
+    ++count;
+    differ += std::abs(run[i] - rounded[i]) > least * column.deviation ? 1 : 0;
+  }
+  return tenth * differ > count;
+}
+
 }  // namespace
 
 double root_mean_square(const VectorXd& r) { return r.norm() / std::sqrt(static_cast<double>(r.size())); }
@@ -70,7 +85,40 @@ std::vector<std::string> Mismatch::settings(const VectorXd& z) const {
   return all;
 }
 
-std::vector<MatchedRun> Mismatch::run(const std::vector<std::vector<double>>& points) {
+std::vector<MatchedRun> Mismatch::run(const std::vector<VectorXd>& points) {
+  std::vector<std::vector<double>> all;
+  for (const VectorXd& z : points) all.push_back(values(z));
+  std::vector<MatchedRun> made = run_with(all);
+  for (std::size_t k = 0; k < points.size(); ++k) keep_nearest(points[k], made[k]);
+  return made;
+}
+
+void Mismatch::keep_nearest(const VectorXd& z, const MatchedRun& run) {
+  if (!run.ok()) return;
+  const double residual = root_mean_square(residuals(run));
+  if (!nearest || residual < nearest->residual) nearest = NearestRun{settings(z), residual};
+}
+
+MatchedRun Mismatch::begin(const VectorXd& z, std::vector<std::string>& rounding) {
+  // So little that of a smooth function no more than rounding is seen.
+  constexpr double beside = 1e-13;
+  VectorXd near = z;
+  for (std::size_t i = 0; i < tuned.size(); ++i) near = moved(near, i, beside);
+  std::vector<MatchedRun> made = run_with({values(z), values(near)});
+  MatchedRun& run = made[0];
+  for (std::size_t c = data.columns.size(); made[1].ok() && run.ok() && c-- > 0;) {
+    const MeasuredColumn& column = data.columns[c];
+    // What is over steps is to be a hundredth of what the parameters do.
+    if (column.deviation_given || !felt_by(column, run.columns[c], made[1].columns[c], 0.01 * step_)) continue;
+    rounding.insert(rounding.begin(), column.name);
+    data.columns.erase(data.columns.begin() + static_cast<std::ptrdiff_t>(c));
+    run.columns.erase(run.columns.begin() + static_cast<std::ptrdiff_t>(c));
+  }
+  keep_nearest(z, run);
+  return std::move(run);
+}
+
+std::vector<MatchedRun> Mismatch::run_with(const std::vector<std::vector<double>>& points) {
   std::vector<SceneValues> scenes;
   for (const std::vector<double>& x : points) scenes.push_back(with_values(scene_.values, tuned, x));
   std::vector<MatchedRun> made = matched_runs(scenes, registry_, data, jobs_, control_);
@@ -91,11 +139,9 @@ VectorXd Mismatch::residuals(const MatchedRun& run) const {
 }
 
 bool Mismatch::evaluate(const VectorXd& z, VectorXd& r) {
-  const MatchedRun made = run({values(z)}).front();
+  const MatchedRun made = run({z}).front();
   if (!made.ok()) return false;
   r = residuals(made);
-  if (const double residual = root_mean_square(r); !nearest || residual < nearest->residual)
-    nearest = NearestRun{settings(z), residual};
   return true;
 }
 
@@ -104,9 +150,9 @@ bool Mismatch::derivatives(const VectorXd& z, const std::vector<std::size_t>& of
     std::size_t run;
     double at;
   };
-  std::vector<std::vector<double>> points = {values(z)};
+  std::vector<VectorXd> points = {z};
   for (const std::size_t i : of)
-    for (const double side : {1.0, -1.0}) points.push_back(values(moved(z, i, side * step)));
+    for (const double side : {1.0, -1.0}) points.push_back(moved(z, i, side * step));
   const std::vector<MatchedRun> made = run(points);
   if (!made[0].ok()) return false;
   J.resize(static_cast<Index>(data.count()), static_cast<Index>(of.size()));

@@ -22,8 +22,13 @@ class Mismatch {
 
   [[nodiscard]] bool stopped() const { return control_.stop(); }
   [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
-  /// Runs with these values, side by side.
-  std::vector<MatchedRun> run(const std::vector<std::vector<double>>& points);
+  /// Runs at these points, side by side; the nearest to the data is kept.
+  std::vector<MatchedRun> run(const std::vector<Eigen::VectorXd>& points);
+  /// The same with values that are no point's.
+  std::vector<MatchedRun> run_with(const std::vector<std::vector<double>>& points);
+  /// The run at z. Columns without a given deviation that rounding alone changes there by more than derivatives bear
+  /// are left out of it and of the data. \param rounding gets their names, in their order
+  MatchedRun begin(const Eigen::VectorXd& z, std::vector<std::string>& rounding);
   /// Weighted residuals of a run where something was measured, column by column.
   [[nodiscard]] Eigen::VectorXd residuals(const MatchedRun& run) const;
   /// Those of the run at z; false where there is none.
@@ -37,14 +42,15 @@ class Mismatch {
   bool sensitivity(const Eigen::VectorXd& z, const std::vector<std::size_t>& of, Sensitivity& s);
 
   const std::vector<TunedValue> tuned;
-  const Measured data;
+  Measured data;
   std::size_t runs = 0, failed = 0;
   std::string last_failure;
-  /// What was nearest to the data of all that evaluate() ran; empty where none of its runs came to an end.
+  /// What was nearest to the data of all that begin() and run() made; empty where none of its runs came to an end.
   std::optional<NearestRun> nearest;
 
  private:
   bool derivatives(const Eigen::VectorXd& z, const std::vector<std::size_t>& of, double step, Eigen::MatrixXd& J);
+  void keep_nearest(const Eigen::VectorXd& z, const MatchedRun& run);
   [[nodiscard]] Eigen::VectorXd moved(Eigen::VectorXd z, std::size_t i, double by) const;
   [[nodiscard]] std::vector<std::string> settings(const Eigen::VectorXd& z) const;
 

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "withy/campaign/least_squares.hpp"
 #include "withy/campaign/mismatch.hpp"
 #include "withy/campaign/random.hpp"
 #include "withy/results/result_columns.hpp"
+#include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -21,6 +23,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Indices = std::vector<std::size_t>;
 
+/// Why a fit would have no residuals to spare; empty where it has.
+std::string too_few(const Measured& data, std::size_t parameters) {
+  if (data.count() > parameters) return {};
+  return fmt::format("{}: {} measured values; need more than the {} parameters", data.file, data.count(), parameters);
+}
+
 /// One call of `tune` after its input has been read.
 class TuneSearch {
  public:
@@ -30,8 +38,8 @@ class TuneSearch {
   }
 
   TuneResult found() {
+    const MatchedRun start = begun();
     result_.data = m_.data;
-    const MatchedRun start = m_.run({m_.values(z_)}).front();
     if (start.ok()) result_.before = root_mean_square(m_.residuals(start));
     if (start.ok() || question_.starts > 1)
       search();
@@ -45,6 +53,21 @@ class TuneSearch {
   }
 
  private:
+  /// The scene's own run, with the columns that can be compared. \throws study::InputError where what is left of the
+  /// data is not what was asked for
+  MatchedRun begun() {
+    std::vector<std::string> rounding;
+    MatchedRun start = m_.begin(z_, rounding);
+    if (rounding.empty()) return start;
+    if (!question_.outputs.empty() || m_.data.columns.empty())
+      throw study::InputError(fmt::format(
+          "{}:1:1: rounding alone changes {}, whose range cannot be weighed by: give the standard deviation "
+          "of the measurement, --deviations {}=…",
+          m_.data.file, listed(rounding), rounding.front()));
+    for (const std::string& name : rounding) m_.data.ignored.push_back(name + " (changes by rounding alone)");
+    if (const std::string few = too_few(m_.data, m_.tuned.size()); !few.empty()) throw study::InputError(few);
+    return start;
+  }
   void search() {
     look_for_undetermined();
     if (active_.empty()) {
@@ -115,12 +138,12 @@ class TuneSearch {
     constexpr std::size_t draws = 10;
     std::vector<std::pair<double, VectorXd>> points;
     for (std::size_t k = 1; k < question_.starts && !m_.stopped(); ++k) {
-      std::vector<std::vector<double>> drawn_values;
+      std::vector<VectorXd> tried;
       for (std::size_t d = 0; d < draws; ++d) {
-        points.emplace_back(std::numeric_limits<double>::infinity(), drawn(draws * k + d));
-        drawn_values.push_back(m_.values(points.back().second));
+        tried.push_back(drawn(draws * k + d));
+        points.emplace_back(std::numeric_limits<double>::infinity(), tried.back());
       }
-      const std::vector<MatchedRun> runs = m_.run(drawn_values);
+      const std::vector<MatchedRun> runs = m_.run(tried);
       for (std::size_t d = 0; d < draws; ++d)
         if (runs[d].ok()) points[points.size() - draws + d].first = root_mean_square(m_.residuals(runs[d]));
     }
@@ -194,7 +217,7 @@ class TuneSearch {
 
 void TuneSearch::report(const MatchedRun& start) {
   add_parameters();
-  std::vector<MatchedRun> last = m_.run({result_.values()});
+  std::vector<MatchedRun> last = m_.run_with({result_.values()});
   if (!last.front().ok()) {
     result_.trouble = "the run with the fitted values fails: " + last.front().failure;
     return;
@@ -249,6 +272,9 @@ void TuneSearch::add_deviations(const VectorXd& residuals) {
   }
   const MatrixXd C = covariance(s.J, variances);
   const VectorXd sigma = C.diagonal().cwiseSqrt(), singular = singular_values(s.J);
+  // Residuals of zero leave the correlations that equal ones would have.
+  const MatrixXd R = variances.maxCoeff() > 0 ? C : covariance(s.J, VectorXd::Ones(residuals.size()));
+  const VectorXd size = R.diagonal().cwiseSqrt();
   result_.singular_values.assign(singular.begin(), singular.end());
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto row = static_cast<Index>(k);
@@ -256,20 +282,21 @@ void TuneSearch::add_deviations(const VectorXd& residuals) {
     p.deviation = std::abs(p.tuned.slope(z_[static_cast<Index>(free[k])])) * sigma[row];
     std::vector<double>& line = result_.correlation.emplace_back();
     for (Index j = 0; j < C.cols(); ++j)
-      line.push_back(sigma[row] > 0 && sigma[j] > 0 ? C(row, j) / (sigma[row] * sigma[j]) : (row == j ? 1.0 : 0.0));
+      line.push_back(size[row] > 0 && size[j] > 0 ? R(row, j) / (size[row] * size[j]) : (row == j ? 1.0 : 0.0));
   }
 }
 
 /// Starts that came to the fitted values, within their deviations or a hundredth of their coordinates.
 void TuneSearch::count_agreeing() {
   constexpr double deviations = 3, share = 0.01;
-  for (const SearchEnd& end : result_.starts) {
+  for (SearchEnd& end : result_.starts) {
     bool same = std::isfinite(end.residual);
     for (std::size_t i = 0; i < result_.parameters.size(); ++i) {
       const FittedValue& p = result_.parameters[i];
       const double apart = std::abs(end.to[i] - p.value), slope = std::abs(p.tuned.slope(z_[static_cast<Index>(i)]));
       same = same && apart <= std::max(deviations * p.deviation.value_or(0), share * slope);
     }
+    end.agrees = same;
     result_.agreeing += same ? 1 : 0;
   }
 }
@@ -299,9 +326,8 @@ TuneResult tune(const study::Prepared& scene, Registry& registry, const TuneQues
   Measured data = read_measured(
       {question.data, question.outputs, question.deviations, scene.scene.initial.time, end, question.text},
       results.columns(), problems);
-  if (problems.empty() && data.count() <= tuned.size())
-    problems.push_back(fmt::format("{}: {} measured values; need more than the {} parameters", question.data,
-                                   data.count(), tuned.size()));
+  if (problems.empty())
+    if (std::string few = too_few(data, tuned.size()); !few.empty()) problems.push_back(std::move(few));
   if (!problems.empty()) throw study::InputError(lines_of(problems));
   Mismatch mismatch(scene, registry, question, std::move(tuned), std::move(data));
   return TuneSearch(mismatch, question).found();

@@ -55,6 +55,7 @@ struct SearchEnd {
   std::vector<double> from, to;  ///< values in the units of the parameters
   double residual = 0;           ///< root of the mean square of weighted residuals
   bool converged = false;
+  bool agrees = false;  ///< it came to the fitted values
   std::string reason;
 };
 
@@ -77,7 +78,7 @@ struct TuneResult {
   std::size_t runs = 0, failed = 0;
   std::string last_failure;
   bool interrupted = false;
-  std::optional<NearestRun> nearest;  ///< of an interrupted search the best that it had come to
+  std::optional<NearestRun> nearest;  ///< of an interrupted search the best run that had ended
   std::string trouble;                ///< why there is no fit; empty where there is
 
   [[nodiscard]] bool converged() const { return trouble.empty() && !starts.empty() && starts.front().converged; }

@@ -109,7 +109,9 @@ std::string search_text(const TuneResult& result) {
   text += fmt::format("{} of {} starts came to this {}", result.agreeing, result.starts.size(),
                       best.converged ? "minimum" : "point");
   for (const SearchEnd& s : result.starts) {
-    if (!std::isfinite(s.residual) || s.residual < 1.01 * best.residual) continue;
+    // Residuals of rounding differ by themselves.
+    if (s.agrees || !std::isfinite(s.residual) || s.residual <= 1.01 * best.residual) continue;
+    if (best.residual == 0) return text + fmt::format("; the next lowest has a residual of {:.3g}.\n", s.residual);
     return text + fmt::format("; the next lowest has a residual {:.3g} times as large.\n", s.residual / best.residual);
   }
   return text + ".\n";
@@ -119,8 +121,8 @@ std::string search_text(const TuneResult& result) {
 
 std::string interrupted_text(const TuneResult& result) {
   if (!result.nearest) return {};
-  std::string text = fmt::format("nearest to the data of {} runs, with a weighted residual of {:.4g}", result.runs,
-                                 result.nearest->residual);
+  std::string text = fmt::format("nearest to the data of {} run{}, with a weighted residual of {:.4g}", result.runs,
+                                 result.runs == 1 ? "" : "s", result.nearest->residual);
   if (result.before > 0) text += fmt::format(" ({:.4g} with the scene's values)", result.before);
   text += ", came";
   for (const std::string& setting : result.nearest->settings) text += fmt::format(" --set '{}'", setting);

@@ -83,19 +83,21 @@ std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
     left = effort;
     worst = s;
   }
-  text += fmt::format("{:.3g} are left over on {}", left, c.layout().speed_names[worst]);
+  std::vector<std::string> unsettled;
+  if (left > 0) unsettled.push_back(fmt::format("{:.3g} are left over on {}", left, c.layout().speed_names[worst]));
   if (Eigen::Index state = 0; steady.rates.size() > 0) {
     const double rate = steady.rates.cwiseAbs().maxCoeff(&state);
     if (rate > 0)
-      text += fmt::format(", and {} changes by {:.3g} a second",
-                          c.layout().continuous_names[static_cast<std::size_t>(state)], rate);
+      unsettled.push_back(fmt::format("{} changes by {:.3g} a second",
+                                      c.layout().continuous_names[static_cast<std::size_t>(state)], rate));
   }
   if (Eigen::Index number = 0; steady.renewed.size() > 0) {
     const double change = steady.renewed.cwiseAbs().maxCoeff(&number);
     if (change > 0)
-      text += fmt::format(", and {} changes by {:.3g} with a sample",
-                          sampled_names(c.prepared().model())[static_cast<std::size_t>(number)], change);
+      unsettled.push_back(fmt::format("{} changes by {:.3g} with a sample",
+                                      sampled_names(c.prepared().model())[static_cast<std::size_t>(number)], change));
   }
+  text += unsettled.empty() ? "it has not settled" : fmt::format("{}", fmt::join(unsettled, ", and "));
   if (const std::vector<std::string> limited = at_limits(c, steady.state); !limited.empty()) {
     text += fmt::format(
         "; '{}' {} at a limit there: start from a state nearer to a steady one (--at), as the run.json of "

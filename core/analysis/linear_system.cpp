@@ -16,28 +16,33 @@ using Complex = std::complex<double>;
 /// Below this share of its factors a number is rounding of them.
 constexpr double rounding_share = 1e-11;
 
-/// Takes off the state that y alone sees: it and its rate are zero where y is. What is left sees, as its output, what
-/// would move that state. \returns what y sees it with, 0 where y sees no state
-double drop_seen_state(LinearSystem& s, double scale) {
-  const Eigen::Index n = s.A.rows();
+/// Turns the states by a reflection such that y sees one of them alone. \returns what it sees it with; C is as before
+double turn_seen_state(LinearSystem& s, Eigen::Index onto) {
   const double seen = s.C.norm();
-  if (!(seen > rounding_share * scale)) return 0;
-  // The reflection that brings C onto the last state.
   Eigen::VectorXd v = s.C.transpose();
-  const double sign = v[n - 1] < 0 ? 1.0 : -1.0;
-  v[n - 1] -= sign * seen;
+  const double sign = v[onto] < 0 ? 1.0 : -1.0;
+  v[onto] -= sign * seen;
   const double square = v.squaredNorm();
   if (square > 0) {
     s.A -= (2 / square) * v * (v.transpose() * s.A).eval();
     s.A -= (2 / square) * (s.A * v).eval() * v.transpose();
     s.B -= (2 / square) * v * (v.transpose() * s.B).eval();
   }
+  return sign * seen;
+}
+
+/// Takes off the state that y alone sees: it and its rate are zero where y is. What is left sees, as its output, what
+/// would move that state. \returns what y sees it with, 0 where y sees no state
+double drop_seen_state(LinearSystem& s, double scale) {
+  const Eigen::Index n = s.A.rows();
+  if (!(s.C.norm() > rounding_share * scale)) return 0;
+  const double seen = turn_seen_state(s, n - 1);
   const Eigen::MatrixXd A = s.A, B = s.B;
   s.A = A.topLeftCorner(n - 1, n - 1);
   s.C = A.bottomLeftCorner(1, n - 1);
   s.B = B.topRows(n - 1);
   s.D = B.bottomRows(1);
-  return sign * seen;
+  return seen;
 }
 
 /// What rounding of a matrix moves its eigenvalues by: its size times what the vectors of each make of it, and of
@@ -99,13 +104,27 @@ struct Pencil {
   double turned = 0;  ///< length of C and D
 };
 
+/// Of a slight D, with the states turned such that y sees the first alone: that goes with as much of the input as keeps
+/// y at zero. E is 1 but for its first element, which is no difference of others, and which QZ keeps however small it
+/// is, as the first.
+Pencil pencil_of_slight(LinearSystem s, double unit, double turned) {
+  const double seen = turn_seen_state(s, 0), share = unit * s.D(0, 0) / turned;
+  Pencil p{s.A, Eigen::MatrixXd::Identity(s.A.rows(), s.A.rows()), turned};
+  p.A.col(0) = share * s.A.col(0) - (seen / turned) * unit * s.B;
+  p.E(0, 0) = share;
+  return p;
+}
+
 /// \param s balanced; D is not zero
 Pencil pencil_of_zeros(const LinearSystem& s) {
+  constexpr double slight = 1e-3;
   const Eigen::Index n = s.A.rows();
   const double input = s.B.norm(), unit = input > 0 && s.A.norm() > 0 ? s.A.norm() / input : 1;
   Eigen::VectorXd v(n + 1);
   v << s.C.transpose(), unit * s.D(0, 0);
   const double turned = v.norm();
+  // Turned states are mixed, and what is zero beside its own row and column is harder to tell: not without need.
+  if (std::abs(v[n]) < slight * turned) return pencil_of_slight(s, unit, turned);
   v[n] += v[n] < 0 ? -turned : turned;
   const Eigen::VectorXd x = v.head(n), along = 2 / v.squaredNorm() * x;
   return {s.A - (s.A * x + unit * v[n] * s.B) * along.transpose(),
@@ -132,6 +151,11 @@ void drop(Pencil& p, const Eigen::MatrixXd& directions, Eigen::MatrixXd& of_elem
   p.E = without(p.E);
 }
 
+/// Whether another of the values is as near as that.
+bool has_neighbour(const Eigen::VectorXcd& values, Eigen::Index i, double near) {
+  return (((values.array() - values[i]).abs() <= near).count()) > 1;
+}
+
 /// As eigenvalues_with_zeros. \param known how much more than rounding the pencil may be off by
 KnownRoots roots_of(Pencil p, double rounding, double known) {
   constexpr double share = 1e-13;
@@ -150,11 +174,16 @@ KnownRoots roots_of(Pencil p, double rounding, double known) {
     // One that is nowhere is as far away as rounding lets it be.
     const double beta = solver.betas()[i], least = 1e-16 * p.E.norm();
     roots.values[i] = solver.alphas()[i] / (std::abs(beta) > least ? beta : std::copysign(least, beta));
-    const double size = p.A.norm() + std::abs(roots.values[i]);
-    const double here = share * known * size * left.row(i).norm() * right.col(i).norm();
+  }
+  for (Eigen::Index i = 0; i < p.A.rows(); ++i) {
+    const double far = std::abs(roots.values[i]), lengths = left.row(i).norm() * right.col(i).norm();
+    // Elements of E are known each by itself, but where D is a difference.
+    const double of_E = known > 1 ? known * lengths : left.row(i).cwiseAbs() * p.E.cwiseAbs() * right.col(i).cwiseAbs();
+    const double here = share * (known * p.A.norm() * lengths + far * of_E);
     // Of double ones without two vectors, of which the vectors tell nothing.
-    const double at_most = std::sqrt(share * known) * size;
-    roots.errors[i] = here < at_most ? here : at_most;
+    const double at_most = std::sqrt(share * known) * (p.A.norm() + far);
+    const bool alike = !std::isfinite(here) || has_neighbour(roots.values.head(p.A.rows()), i, at_most);
+    roots.errors[i] = alike && !(here < at_most) ? at_most : here;
   }
   return roots;
 }

@@ -51,8 +51,7 @@ LinearSystem with_little_through(double through) {
 // Zeros so uncertain that any was within its error of a pole took poles out of the response, and off the static gain.
 TEST(Roots, OfASystemWithTheSlightestDirectWayAreAllSeen) {
   for (const double through : {1.0, 1e-4, 1e-6, 1e-8, 1e-10}) {
-    // A zero stands at about −C B/D, and is known to rounding times its distance.
-    const double share = 1e-6 + 1e-15 / through;
+    constexpr double share = 1e-11;
     const LinearSystem system = with_little_through(through);
     const ZerosAndGain found = zeros(system);
     ASSERT_EQ(found.zeros.values.size(), 4);
@@ -72,6 +71,34 @@ TEST(Roots, OfASystemWithTheSlightestDirectWayAreAllSeen) {
           << through << s;
     }
   }
+}
+
+// One zero, at A − B C/D. It was off by rounding of what the states carry beside D, and by a hundred times what was
+// told.
+TEST(Roots, FarZerosAreKnownToRoundingOfThemselves) {
+  const auto one = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
+  for (const double period : {0.0, 0.01})
+    for (double through = 1.7; std::abs(through) > 1e-10; through *= -0.37) {
+      const double a = 0.3, b = 2.9, c = 0.7, exact = a - b * c / through;
+      const KnownRoots found = zeros({one(a), one(b), one(c), one(through), period}).zeros;
+      ASSERT_EQ(found.values.size(), 1);
+      EXPECT_NEAR(found.values[0].real(), exact, 1e-12 * std::abs(exact)) << through;
+      EXPECT_EQ(found.values[0].imag(), 0);
+      EXPECT_LT(found.errors[0], 1e-11 * std::abs(exact)) << through;
+      EXPECT_GE(found.errors[0], std::abs(found.values[0] - exact)) << through;
+    }
+}
+
+// Zeros of (s + 1)³ over other poles, in the form of a chain: rounding spreads three that are one by its third root,
+// which their errors tell.
+TEST(Roots, ErrorsOfZerosThatAreOneTellWhatRoundingMakesOfThem) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3, 3), B = Eigen::MatrixXd::Zero(3, 1), C(1, 3);
+  A << 0, 1, 0, 0, 0, 1, -24, -26, -9;
+  B(2) = 1;
+  C << 1 - 24, 3 - 26, 3 - 9;
+  const KnownRoots found = zeros({A, B, C, Eigen::MatrixXd::Ones(1, 1), 0}).zeros;
+  ASSERT_EQ(found.values.size(), 3);
+  for (int i = 0; i < 3; ++i) EXPECT_GE(found.errors[i], std::abs(found.values[i] + 1.0)) << i;
 }
 
 }  // namespace

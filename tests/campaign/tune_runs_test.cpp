@@ -143,6 +143,8 @@ TEST(TuneRuns, GainsOfASampledControllerAreFoundInItsRows) {
   ASSERT_TRUE(result.converged()) << result.trouble;
   EXPECT_NEAR(result.parameters[0].value, 20, 1e-5);
   EXPECT_NEAR(result.parameters[1].value, 6, 1e-5);
+  // Also where nothing is left of the residuals.
+  EXPECT_GT(std::abs(result.correlation[1][0]), 1e-3) << result.after;
 }
 
 constexpr const char* pendulum = R"(format: withy/1
