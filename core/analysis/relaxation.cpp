@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "withy/core/analysis/scaled_problem.hpp"
 #include "withy/core/model/hinge_rates.hpp"
@@ -61,6 +62,20 @@ std::vector<Eigen::Index> turning(const Model& model, const std::vector<Eigen::I
   return found;
 }
 
+/// Moves by a displacement or, where closed loops do not reach so far, by the half that they do reach.
+/// \returns whether they reach any
+bool take(const TangentDynamics& dynamics, State& state, Eigen::VectorXd displacement) {
+  constexpr int most_halves = 20;
+  for (int halves = 0; halves < most_halves; ++halves, displacement *= 0.5) {
+    State there = state;
+    dynamics.displace(there.y, displacement);
+    if (std::any_of(there.y.begin(), there.y.end(), [](double y) { return std::isnan(y); })) continue;
+    state = std::move(there);
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool lasts(const TangentDynamics& dynamics, const State& state, const Held& held) {
@@ -93,7 +108,7 @@ std::optional<Relaxation> relaxed(const TangentDynamics& dynamics, const State& 
     if (here.stable() && slowness <= nearly_newton * here.greatest && turn < longest_turn) return found;
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.size()));
     moved(free) = step * std::min(1.0, longest_turn / std::max(turn, longest_turn));
-    dynamics.displace(found.state.y, moved);
+    if (!take(dynamics, found.state, moved)) return {};
   }
   return {};
 }
