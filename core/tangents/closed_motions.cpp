@@ -14,9 +14,12 @@
 namespace withy {
 namespace {
 
-/// Of its size, what is left of a row or a column beside the others where it is independent of them, as ClosedLoops has
-/// it; and what is left of a speed that closes loops well.
-constexpr double independent = 1e-6, closes_well = 0.1;
+/// Of the greatest, what is left of an equation beside the others where it is independent of them, as ClosedLoops has
+/// it.
+constexpr double independent = 1e-6;
+/// Lengths that what follows moves by where what it follows moves by one: there it turns back, and nearer than this the
+/// motions are not those of that speed.
+constexpr double turns_back = 1e3;
 
 /// [rad], and in lengths of the loop: how far at a time motions are followed, and what follows may have to be moved
 /// then.
@@ -24,24 +27,27 @@ constexpr double near_by = 0.2;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Directions in the space of the gaps that are closed already.
-class Closed {
- public:
-  explicit Closed(Eigen::Index equations) : basis_(equations, 0) {}
-  /// Takes a column where more than this share of it is new.
-  bool take(Eigen::VectorXd column, double share) {
-    const double size = column.norm();
-    for (int twice = 0; twice < 2; ++twice) column -= basis_ * (basis_.transpose() * column).eval();
-    const double left = column.norm();
-    if (!(left > share * size)) return false;
-    basis_.conservativeResize(Eigen::NoChange, basis_.cols() + 1);
-    basis_.rightCols(1) = column / left;
-    return true;
-  }
+/// An orthonormal basis of what the rows take to nothing, in columns.
+Eigen::MatrixXd null_columns(const Eigen::MatrixXd& rows) {
+  if (rows.isZero(0)) return Eigen::MatrixXd::Identity(rows.cols(), rows.cols());
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(rows.transpose());
+  factors.setThreshold(independent);
+  const Eigen::MatrixXd Q = factors.householderQ();
+  return Q.rightCols(rows.cols() - factors.rank());
+}
 
- private:
-  Eigen::MatrixXd basis_;
-};
+/// Takes from the candidates the first that moves by at least a share of what moves most, and its motion from the
+/// motions. \returns its place; the number of candidates where none does
+std::size_t take_first(const std::vector<Eigen::Index>& candidates, double share, Eigen::MatrixXd& motions) {
+  const double most = motions.rowwise().norm().maxCoeff();
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const Eigen::RowVectorXd own = motions.row(candidates[k]);
+    if (!(own.norm() >= share * most) || own.isZero(0)) continue;
+    motions -= (motions * own.transpose()).eval() * own / own.squaredNorm();
+    return k;
+  }
+  return candidates.size();
+}
 
 Eigen::MatrixXd transposed_inverse(const Eigen::MatrixXd& of_followers) {
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(of_followers.transpose());
@@ -63,23 +69,39 @@ ClosedMotions::ClosedMotions(const Model& model, std::shared_ptr<const Equations
 }
 
 void ClosedMotions::choose(const Eigen::MatrixXd& J, const std::vector<bool>& held) {
+  /// Of what moves most. Modes rather move by themselves than hinges, whose motion they ask for.
+  constexpr double share_of_modes = 0.1, share_of_hinges = 0.8;
   const Layout& layout = model_.layout();
-  const double greatest = J.colwise().norm().maxCoeff();
-  Closed closed(J.rows());
-  const auto take = [&](const std::vector<Slot>& slots, double share) {
-    for (auto slot = slots.rbegin(); slot != slots.rend(); ++slot)
-      for (std::size_t s = slot->speed + slot->speeds; s-- > slot->speed;) {
-        if (held[s] || !in_loops_[s] || follows_[s]) continue;
-        const auto column = J.col(static_cast<Eigen::Index>(s));
-        follows_[s] = column.norm() > independent * greatest && closed.take(column, share);
-      }
+  std::vector<Eigen::Index> all;  // speeds
+  std::vector<Eigen::Index> modes, hinges;
+  const auto add = [&](const std::vector<Slot>& slots, std::vector<Eigen::Index>& to) {
+    for (const Slot& slot : slots)
+      for (std::size_t s = slot.speed; s < slot.speed + slot.speeds; ++s)
+        if (in_loops_[s] && !held[s]) {
+          to.push_back(static_cast<Eigen::Index>(all.size()));
+          all.push_back(static_cast<Eigen::Index>(s));
+          follows_[s] = true;
+        }
   };
-  for (const double share : {closes_well, independent}) take(layout.hinges, share);
-  for (const double share : {closes_well, independent}) take(layout.bodies, share);
-  for (std::size_t s = 0; s < follows_.size(); ++s) {
+  add(layout.bodies, modes);
+  add(layout.hinges, hinges);
+  Eigen::MatrixXd rows = J(Eigen::all, all);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    rows.col(static_cast<Eigen::Index>(k)) *= length_ / reaches_[static_cast<std::size_t>(all[k])];
+  Eigen::MatrixXd motions = null_columns(rows);
+  const auto take = [&](std::vector<Eigen::Index>& candidates, double share) {
+    const std::size_t k = take_first(candidates, share, motions);
+    if (k == candidates.size()) return false;
+    const Eigen::Index speed = all[static_cast<std::size_t>(candidates[k])];
+    follows_[static_cast<std::size_t>(speed)] = false;
+    moving_.push_back(speed);
+    candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(k));
+    return true;
+  };
+  for (Eigen::Index left = motions.cols(); left > 0; --left)
+    if (!take(modes, share_of_modes) && !take(hinges, share_of_hinges) && !take(modes, 0)) break;
+  for (std::size_t s = 0; s < follows_.size(); ++s)
     (follows_[s] ? followers_ : others_).push_back(static_cast<Eigen::Index>(s));
-    if (in_loops_[s] && !held[s] && !follows_[s]) moving_.push_back(static_cast<Eigen::Index>(s));
-  }
 }
 
 ClosedMotions::Seen ClosedMotions::see(std::span<const double> y) const {
@@ -107,6 +129,8 @@ ClosedMotions::At ClosedMotions::at(std::span<const double> y) const {
     at.Z.setConstant(nan);
   else
     at.Z(followers_, others_) = -factors.solve(at.J(Eigen::all, others_));
+  for (const Eigen::Index i : moving_)
+    if (!(reach(at.Z.col(i)) <= turns_back * reaches_[static_cast<std::size_t>(i)])) at.Z.setConstant(nan);
   return at;
 }
 

@@ -24,8 +24,8 @@ class ClosedLoops;
 class ClosedMotions {
  public:
   /// Chooses what follows at a state: of the speeds that change the shape of a loop and are not held as many as there
-  /// are independent equations. Hinges follow, and where they cannot close the loops modes do; of either the last ones
-  /// in the model's order, as far as they close well.
+  /// are independent equations. By themselves move, one after the other, modes and then hinges, the first of the model
+  /// that moves by a notable share of what moves most in what is left of the motions.
   /// \param model with loops, which outlives the object \param equations of such a model (ClosedLoops)
   /// \param held one a speed
   ClosedMotions(const Model& model, std::shared_ptr<const EquationsOfMotion> equations, const State& state,
@@ -37,7 +37,8 @@ class ClosedMotions {
   /// The loops at a state.
   struct At {
     Eigen::MatrixXd J;  ///< equations × speeds [m/rad, 1]
-    /// Speeds × speeds, columns of those that follow zero; not finite where those cannot close the loops.
+    /// Speeds × speeds, columns of those that follow zero; not finite where those cannot close the loops,
+    /// or nearly turn back.
     Eigen::MatrixXd Z;
   };
   [[nodiscard]] At at(std::span<const double> y) const;
