@@ -116,33 +116,6 @@ std::vector<Offered> chosen_of(const std::vector<Offered>& all, const std::vecto
   throw OptionError("outputs", unknown_names(unknown, known));
 }
 
-/// Of the derivatives, as a part of what a number of the same unit changes by.
-/// \param change of the derivatives, and all by the step of their state, so that states of different units compare
-double uncertainty_of(const SensedDerivatives& d, const Eigen::MatrixXd& change, const SmallMotions& motions) {
-  // Of a sensor's numbers some may be zero but for rounding of the others, as the moment of a reaction: all of a unit.
-  constexpr double rounding = 1e-11;
-  const auto sensor_of = [&](Eigen::Index k) {
-    const std::string& name = motions.columns()[static_cast<std::size_t>(k)].name;
-    return name.substr(0, name.find('.'));
-  };
-  std::map<std::string, double> greatest, sizes;
-  for (Eigen::Index k = 0; k < d.values.size(); ++k) {
-    double& most = greatest[motions.columns()[static_cast<std::size_t>(k)].unit];
-    double& size = sizes[sensor_of(k)];
-    for (Eigen::Index i = 0; i < change.cols(); ++i) {
-      most = std::max(most, std::abs(d.by_state(k, i)) * motions.step(i));
-      size = std::max(size, std::abs(d.by_state(k, i)) * motions.step(i));
-    }
-  }
-  double uncertainty = 0;
-  for (Eigen::Index k = 0; k < d.values.size(); ++k) {
-    const double most = greatest[motions.columns()[static_cast<std::size_t>(k)].unit];
-    const double of_row = change.row(k).maxCoeff();
-    if (most > 0 && !(of_row <= rounding * sizes[sensor_of(k)])) uncertainty = std::max(uncertainty, of_row / most);
-  }
-  return uncertainty;
-}
-
 }  // namespace
 
 std::vector<LinearOutput> linear_outputs(const Configuration& c, const std::vector<std::string>& names) {
@@ -177,9 +150,19 @@ SensedDerivatives sensed_derivatives(SmallMotions& motions) {
         adaptive_difference([&](double h) -> Eigen::VectorXd { return motions.sensed(motions.displaced(i, h)); },
                             motions.step(i), motions.place(i));
     d.by_state.col(i) = column.slope;
+    // Both in what the state changes over its step, so that states of different units compare.
     change.col(i) = column.change * motions.step(i);
   }
-  d.uncertainty = uncertainty_of(d, change, motions);
+  // What a number of the same unit changes by is what its rounding is to be seen against.
+  std::map<std::string, double> greatest;
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    double& most = greatest[motions.columns()[static_cast<std::size_t>(k)].unit];
+    for (Eigen::Index i = 0; i < size; ++i) most = std::max(most, std::abs(d.by_state(k, i)) * motions.step(i));
+  }
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const double most = greatest[motions.columns()[static_cast<std::size_t>(k)].unit];
+    if (most > 0) d.uncertainty = std::max(d.uncertainty, change.row(k).maxCoeff() / most);
+  }
   return d;
 }
 

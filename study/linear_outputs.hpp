@@ -29,9 +29,7 @@ Eigen::RowVectorXd row_of_free(const LinearOutput& output, const std::vector<Eig
 struct SensedDerivatives {
   Eigen::VectorXd values;
   Eigen::MatrixXd by_state;  ///< columns × size
-  /// Greatest change of an element at the last refinement, over the greatest of its unit. Rows that are rounding beside
-  /// others of their sensor do not count.
-  double uncertainty = 0;
+  double uncertainty = 0;    ///< greatest change of an element at the last refinement, over the greatest of its unit
 };
 /// By central differences of eighth order. \throws std::domain_error as SmallMotions::sensed
 SensedDerivatives sensed_derivatives(SmallMotions& motions);

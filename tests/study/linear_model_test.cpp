@@ -280,38 +280,6 @@ initial: {hinges: {i: {position: 0.3}, j: {position: 0.3}, k: {position: 0.3}}}
   EXPECT_THROW(static_cast<void>(linear_model(c, {{"i"}, {"b.tip.deflection_x"}})), InputError) << "b is rigid";
 }
 
-/// Nothing acts along a slide nor, about the axis of a free hinge, on it: what of its reaction is zero is so at every
-/// state, but for rounding.
-TEST(LinearModel, OfAReactionThatIsZeroButForRoundingIsZero) {
-  for (const std::string turn : {"0.5", "-0.9", "1.3"}) {
-    const LinearModel m = linear_model(at_start(scene_of(R"(
-gravity: [0, -9.81, 0]
-bodies:
-  cart: {type: rigid, mass: 3}
-  rod: {type: rigid, mass: 2, center_of_mass: [0, -0.5, 0], inertia: [0.2, 0.01, 0.2, 0, 0, 0]}
-  arm: {type: beam, length: 0.8, mass_per_length: 0.5, bending_y: {stiffness: 20, modes: 2, family: clamped-free}}
-hinges:
-  slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}
-  pivot: {type: revolute, axis: [0, 0, 1], parent: cart, child: rod}
-  elbow: {type: revolute, axis: [0, 0, 1], parent: rod, child: arm}
-loads: {spring: {type: hinge-spring, hinge: elbow, stiffness: 30}}
-outputs: {push: {type: reaction, hinge: slide}}
-initial:
-  hinges: {pivot: {position: )" + turn + R"(, rate: 1}, elbow: {position: 0.2, rate: -2}}
-  bodies: {arm: {modes: [0.01, 0.002], rates: [0.1, 0.2]}}
-)")),
-                                       {{"slide"}, {"push.fx", "push.fy", "push.mz"}});
-    const auto greatest = [&](const std::string& name) {
-      return m.system.C.row(find(m.outputs, name)).cwiseAbs().maxCoeff();
-    };
-    EXPECT_GT(greatest("push.fy"), 1) << turn;
-    EXPECT_LT(greatest("push.fx"), 1e-8) << turn;
-    EXPECT_LT(greatest("push.mz"), 1e-8) << turn;
-    const double told = std::stod(m.output_derivatives.substr(m.output_derivatives.rfind(' ')));
-    EXPECT_LT(told, 1e-6) << m.output_derivatives;
-  }
-}
-
 /// At 1e8 m a coordinate has steps of 1.5e-8 m.
 TEST(LinearModel, OfSensorsFarFromTheOriginIsThatOfSensorsNearIt) {
   for (const char* place : {"0.5", "1e8", "1e11"}) {
