@@ -8,10 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "withy/core/plugin/central_difference.hpp"
 
@@ -19,8 +17,7 @@ namespace withy {
 
 inline constexpr double golden_section = std::numbers::phi - 1;
 
-/// Derivatives with what is left between the two steps that told them, or more where no two agreed: by how much shorter
-/// ones scatter.
+/// Derivatives with what is left between the two steps that told them.
 template <class Matrix>
 struct RefinedDifference {
   Matrix slope, change;  ///< `change` is infinite where there were no two steps
@@ -70,45 +67,6 @@ Eigen::ArrayXX<bool> in_stairs(Function&& f, double wide, double fine, const Mat
   return climbs && has_treads(f, wide, fine, wide_slope, fine_slope);
 }
 
-/// What differences over two steps tell of one number: that of the longer step, and what the two have left.
-struct SlopeOfSteps {
-  double slope, left, shorter;  ///< `shorter` is the shorter step
-};
-
-/// The number of the steps that tell a slope best, and what may be wrong with it.
-struct ToldSlope {
-  std::size_t steps;
-  double change;
-};
-
-/// Of steps that came to no agreement, longest first, those which are off by least; nothing where none is finite. Steps
-/// are off by what they have left, or by more: what shorter ones have left tells how f scatters, as the rounding of a
-/// difference of great numbers makes it, and longer steps turn the same scatter into less slope. That shortest steps
-/// agree by chance, or that f doubles by chance from one step to the next, is so no reason to take them. Where f does
-/// something else nearby, shorter steps agree on another slope than longer ones, and they agree more than once.
-inline std::optional<ToldSlope> told_best(const std::vector<SlopeOfSteps>& told) {
-  constexpr double visible = 1e-4;
-  const auto scatter_of = [&](std::size_t k) {
-    return std::isfinite(told[k].left) ? told[k].left * told[k].shorter : 0.0;
-  };
-  // The shortest have none after them, but those before.
-  double scatter = told.size() > 1 ? scatter_of(told.size() - 2) : 0.0;
-  std::vector<double> off(told.size());
-  for (std::size_t k = told.size(); k-- > 0;) {
-    scatter = std::max(scatter, scatter_of(k));
-    off[k] = std::isfinite(told[k].left) ? scatter / told[k].shorter : told[k].left;
-  }
-  std::optional<ToldSlope> best;
-  for (std::size_t k = 0; k < told.size(); ++k) {
-    double change = off[k];
-    for (std::size_t m = k + 1; m < told.size(); ++m)
-      if (const double apart = std::abs(told[m].slope - told[k].slope); off[m] <= visible * apart)
-        change = std::max(change, apart);
-    if (std::isfinite(change) && (!best || change < best->change)) best = {k, change};
-  }
-  return best;
-}
-
 /// Finds the derivatives of refine_difference().
 template <class Function>
 class Refinement {
@@ -121,7 +79,6 @@ class Refinement {
     best_.rounding = best_.change;
     best_.step.setConstant(h_);
     settled_.setConstant(before_.rows(), before_.cols(), false);
-    tried_.push_back({before_, sizes_, h_});
   }
   [[nodiscard]] bool done() const { return settled_.all() || h_ / 8 < shortest_; }
 
@@ -129,8 +86,7 @@ class Refinement {
     const Eigen::ArrayXXd sizes_before = sizes_, left_before = rounding * sizes_ / h_;
     h_ /= 8;
     Matrix finer = difference();
-    std::optional<Matrix> between;
-    Eigen::ArrayXX<bool> stairs;  // both found where they are asked for
+    Eigen::ArrayXX<bool> stairs;  // found where they are asked for
     for (Eigen::Index i = 0; i < finer.size(); ++i) {
       if (settled_(i)) continue;
       const double left = std::abs(before_(i) - finer(i)), least = left_before(i) + rounding * sizes_(i) / h_;
@@ -141,11 +97,6 @@ class Refinement {
       if (settled_(i)) continue;
       settled_(i) = left <= agreed * std::abs(finer(i)) + least && !(finer(i) == 0 && left == 0 && acts_beside(i));
       if (settled_(i) && is_new(finer, i)) {
-        if (!between) between = difference_between();
-        // Few digits of rounding, as numbers of two steps are, may be eight times one another.
-        const double third = (*between)(i);
-        settled_(i) = std::abs(third - finer(i)) <= agreed * std::abs(finer(i)) + 2 * least;
-        if (!settled_(i)) continue;
         if (stairs.size() == 0) stairs = in_stairs(f_, wide_, h_, first_, finer);
         if (stairs(i)) {  // what longer steps have told stands
           best_.change(i) = std::min(best_.change(i), same_climb * std::abs(first_(i) - finer(i)));
@@ -153,29 +104,17 @@ class Refinement {
         }
       }
       if (!settled_(i) && !(left < best_.change(i))) continue;
-      take(i, before_(i), left, least, h_);
+      best_.slope(i) = before_(i);
+      best_.change(i) = left;
+      best_.rounding(i) = least + 4 * epsilon * std::abs(place_ * before_(i)) / h_;
+      best_.step(i) = h_;
     }
     before_ = std::move(finer);
-    tried_.push_back({before_, sizes_, h_});
   }
-  [[nodiscard]] auto result() && {
-    // The last two steps may be all that see what acts nearby: another tells whether they see it.
-    if (!settled_.all() && tried_.size() > 1) tried_.push_back({difference_between(), sizes_, between_steps * h_});
-    for (Eigen::Index i = 0; i < settled_.size(); ++i)
-      if (!settled_(i)) choose(i);
-    return std::move(best_);
-  }
+  [[nodiscard]] auto result() && { return std::move(best_); }
 
  private:
   using Matrix = std::decay_t<std::invoke_result_t<Function&, double>>;
-  /// Of a step, one between it and an eighth of it, where places are as exact.
-  static constexpr double between_steps = 5.0 / 8;
-  /// What one step has told.
-  struct Tried {
-    Matrix slope;
-    Eigen::ArrayXXd sizes;
-    double step;
-  };
   static constexpr double epsilon = std::numeric_limits<double>::epsilon(), agreed = 1e-12, rounding = 64 * epsilon;
 
   /// The power of two next to h: places that are not far out are exact then, and f alone rounds. It is no whole
@@ -186,26 +125,6 @@ class Refinement {
     const double power = std::exp2(std::round(std::log2(h)));
     return power < 8 * shortest_ && std::isfinite(shortest_) ? std::exp2(std::ceil(std::log2(8 * shortest_))) : power;
   }
-  void take(Eigen::Index i, double slope, double change, double least, double step) {
-    best_.slope(i) = slope;
-    best_.change(i) = change;
-    best_.rounding(i) = least + 4 * epsilon * std::abs(place_ * slope) / step;
-    best_.step(i) = step;
-  }
-  /// Of an element that no two steps agree on.
-  void choose(Eigen::Index i) {
-    std::vector<SlopeOfSteps> told;
-    for (std::size_t k = 0; k + 1 < tried_.size(); ++k) {
-      const double slope = tried_[k].slope(i);
-      told.push_back({slope, std::abs(slope - tried_[k + 1].slope(i)), tried_[k + 1].step});
-    }
-    const auto best = told_best(told);
-    if (!best) return;
-    const Tried &longer = tried_[best->steps], &shorter = tried_[best->steps + 1];
-    const double least = rounding * (longer.sizes(i) / longer.step + shorter.sizes(i) / shorter.step);
-    take(i, longer.slope(i), best->change, least, shorter.step);
-  }
-  Matrix difference_between() { return central_difference(f_, between_steps * h_); }
   Matrix difference() {
     sizes_.resize(0, 0);
     return central_difference(
@@ -237,7 +156,6 @@ class Refinement {
   double place_, shortest_, h_, wide_;
   Eigen::ArrayXXd sizes_;  ///< greatest |f| of a step, for the rounding of its difference
   Matrix first_, before_;
-  std::vector<Tried> tried_;
   Eigen::ArrayXXd beside_;  ///< what the shortest step changes, once that is asked
   RefinedDifference<Matrix> best_;
   Eigen::ArrayXX<bool> settled_;
@@ -247,8 +165,7 @@ class Refinement {
 /// with a step near h where an eighth of it gives the same, element by element; else by shorter ones until two agree,
 /// or until rounding is more than what two have left. Truncation falls by 8⁸ from one to the next: a spring of a
 /// millimetre is as exact as one of a metre, whose numbers are those of h, and a controller is seen within its limit.
-/// What no two of `levels` pairs agree on is told as the two do that are off by least: a jump as h has it, and a
-/// difference of great numbers, which is rounding alone, as long steps have it. What short steps
+/// What no two of `levels` pairs agree on is told as the two do that are nearest: a jump as h has it. What short steps
 /// agree on is not believed of a function that goes in stairs, as rounding makes them: mostly nothing at all.
 /// \param place the number that steps are added to, where it is known: none is shorter than it resolves
 template <class Function>

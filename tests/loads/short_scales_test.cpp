@@ -141,52 +141,5 @@ TEST(RefinedDifference, TellsAJumpAsItsFirstStepHasIt) {
   EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, first_step)(0));
 }
 
-/// Zero but for rounding: p + q − p − q.
-double cancelled(double p, double q) {
-  volatile double sum = p + q;
-  sum = sum - p;
-  return sum - q;
-}
-
-/// As reactions along free hinges, beside what else is sensed: numbers of other units, greater and smaller.
-TEST(RefinedDifference, TakesNoRoundingForASlope) {
-  for (const double true_slope : {0.0, 1e-6, -0.3}) {
-    for (int k = 0; k < 2000; ++k) {
-      const double at = 0.3 + 0.1 * k;
-      const auto f = [&](double x) -> Eigen::Vector3d {
-        const double p = 90 * std::sin(at + x), q = 57 * std::cos(at + x);
-        return {cancelled(p, q) + true_slope * x, p, 1e-4 * std::sin(x)};
-      };
-      const auto found = refine_difference(f, 1e-3, 12, at);
-      ASSERT_NEAR(found.slope(0), true_slope, 1e-8) << at;
-      ASSERT_LT(found.change(0), 1e-7) << at;
-      ASSERT_NEAR(found.slope(1), 90 * std::cos(at), 1e-8) << at;
-      ASSERT_NEAR(found.slope(2), 1e-4, 1e-12) << at;
-    }
-  }
-}
-
-/// Within such rounding, what acts nearby alone, kinks, dead zones and limits are seen as without.
-TEST(RefinedDifference, SeesThroughRoundingWhatActsNearby) {
-  for (double reach = 1e-2; reach > 1e-7; reach /= 3) {
-    for (int k = 0; k < 20; ++k) {
-      const double at = 0.3 + 0.7 * k;
-      const auto slope = [&](auto&& law) {
-        const auto noisy = [&](double x) {
-          return Number(law(x) + cancelled(90 * std::sin(at + x), 57 * std::cos(at + x)));
-        };
-        return refined_difference(noisy, 1e-3, at)(0);
-      };
-      const double off = 1e-10 / reach + 1e-9;
-      EXPECT_NEAR(slope([&](double x) { return -200 * x * std::exp(-std::pow(x / reach, 2)); }), -200, 1e-3) << reach;
-      EXPECT_NEAR(slope([&](double x) { return std::clamp(30 * x, -reach, reach); }), 30, off) << reach;
-      EXPECT_NEAR(slope([&](double x) { return 3 * std::abs(x + reach); }), 3, off) << reach;
-      EXPECT_NEAR(slope([&](double x) { return x - std::clamp(x, -reach, reach); }), 0, off) << reach;
-      EXPECT_NEAR(slope([&](double x) { return 3 * x + std::min(x, -reach); }), 3, off) << reach;
-      EXPECT_NEAR(slope([&](double x) { return x > reach ? 1.0 : 2 * x; }), 2, off) << reach;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace withy
