@@ -47,11 +47,11 @@ double drop_seen_state(LinearSystem& s, double scale) {
 
 /// What rounding of a matrix moves its eigenvalues by: its size times what the vectors of each make of it, and of
 /// double ones without two vectors, of which the vectors tell nothing, its root.
-Eigen::VectorXd moved_by_rounding(const Eigen::MatrixXcd& vectors, double rounding, double size) {
+Eigen::VectorXd moved_by_rounding(const Eigen::MatrixXcd& vectors, double of_matrix, double size) {
   const Eigen::MatrixXcd left = Eigen::PartialPivLU<Eigen::MatrixXcd>(vectors).inverse();
   Eigen::VectorXd moved(vectors.cols());
   for (Eigen::Index i = 0; i < moved.size(); ++i) {
-    const double at_most = std::sqrt(rounding * size), here = rounding * left.row(i).norm() * vectors.col(i).norm();
+    const double at_most = std::sqrt(of_matrix * size), here = of_matrix * left.row(i).norm() * vectors.col(i).norm();
     moved[i] = here < at_most ? here : at_most;
   }
   return moved;

@@ -118,14 +118,17 @@ class Assembler {
   /// Newton's method for the gaps, until it comes no nearer.
   void follow(const Free& free) {
     constexpr int most = 200;
-    double best = gap();
+    double best = gap(), from = best;
     for (int i = 0, idle = 0; i < most && idle < 30; ++i) {
       Eigen::VectorXd change = smallest(free, gaps_);
       if (!change.allFinite()) break;
       move(part_of(change) * change);
       if (gap() <= finest_gap * length_ || (gap() <= closed_gap * length_ && gap() >= 0.5 * best)) break;
-      idle = gap() < 0.9 * best ? 0 : idle + 1;
       best = std::min(best, gap());
+      if (best < 0.9 * from)
+        from = best, idle = 0;
+      else
+        ++idle;
     }
   }
   /// The part of a change that is taken at once, in which nothing moves by more than a third of the loops' size: a turn
