@@ -38,8 +38,11 @@ class Assembler {
         J_(gaps_.size(), static_cast<Eigen::Index>(model.layout().speeds)),
         length_(length_of_loops(model)),
         reaches_(reaches_of_speeds(model, length_)),
+        bound_reaches_(reaches_),
         slides_(reaches_.size(), false) {
     for (const ModelRate& rate : hinge_rates(model)) slides_[rate.speed] = !rate.angular;
+    for (const Slot& modes : model.layout().bodies)
+      for (std::size_t k = modes.speed; k < modes.speed + modes.speeds; ++k) slides_[k] = true, bound_reaches_[k] = 1;
     for (const LoopClosure* loop : loops_of(model))
       holds_directions_ = holds_directions_ || holds_all_directions(*loop);
     look();
@@ -138,7 +141,7 @@ class Assembler {
     double part = 1;
     for (std::size_t k = 0; k < reaches_.size(); ++k) {
       const double bound = longest * (slides_[k] ? std::max(length_, gap()) : length_);
-      const double moved = reaches_[k] * std::abs(change[static_cast<Eigen::Index>(k)]);
+      const double moved = bound_reaches_[k] * std::abs(change[static_cast<Eigen::Index>(k)]);
       if (moved > bound) part = std::min(part, bound / moved);
     }
     return part;
@@ -184,9 +187,10 @@ class Assembler {
   DenseMatrix J_;
   double length_;
   std::vector<double> reaches_;
-  std::vector<bool> slides_;       ///< speeds
-  bool holds_directions_ = false;  ///< a hinge of some loop holds all three
-  bool turns_ = false;             ///< gaps and rows are those of ClosedLoops::see_turns
+  std::vector<double> bound_reaches_;  ///< the same, of modes one: beams that close a loop bend far
+  std::vector<bool> slides_;           ///< speeds
+  bool holds_directions_ = false;      ///< a hinge of some loop holds all three
+  bool turns_ = false;                 ///< gaps and rows are those of ClosedLoops::see_turns
   std::optional<std::size_t> turned_over_;
 };
 
