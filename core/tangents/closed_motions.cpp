@@ -186,9 +186,10 @@ bool ClosedMotions::close(std::span<double> y) const {
   for (int i = 0; i < most && moved <= near; ++i) {
     const Seen now = see(y);
     const double left = now.gaps.cwiseAbs().maxCoeff();
-    // Of redundant equations, and where nothing can follow, what is left is rounding already.
+    // Of redundant equations what is left is rounding already.
     if (left <= rounding || (left <= 1e5 * rounding && !(left < 0.5 * before))) return true;
-    if (!std::isfinite(left) || followers_.empty()) return false;
+    if (!std::isfinite(left)) return false;
+    if (followers_.empty()) return left <= 1e6 * rounding;  // as far open as loops may begin
     before = left;
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(now.J(Eigen::all, followers_));
     Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(follows_.size()));
