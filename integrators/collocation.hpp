@@ -119,7 +119,7 @@ class CollocationStages {
   [[nodiscard]] const Eigen::MatrixXd& z() const { return z_; }
   /// f at the stages, the last iteration's.
   [[nodiscard]] const Eigen::MatrixXd& slopes() const { return slopes_; }
-  ShiftedSystem<double>& real_system() { return real_; }
+  [[nodiscard]] const ShiftedSystem<double>& real_system() const { return real_; }
 
  private:
   static Result nonfinite(Result r) {

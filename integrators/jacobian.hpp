@@ -47,8 +47,10 @@ class StepJacobian {
   }
 
   /// Finds it at (t, y) where ẏ is `slope` and h is the step at hand; `evaluate(t, y, slope)` as OneStep's.
+  /// \param least  no difference is taken over less: near rest a part of what is there is nothing but rounding
   template <class Values, class Evaluate>
-  Evaluation update(double t, double h, const Values& y, const Eigen::ArrayXd& slope, Evaluate&& evaluate) {
+  Evaluation update(double t, double h, const Values& y, const Eigen::ArrayXd& slope, Evaluate&& evaluate,
+                    double least = 0) {
     moved_ = y;
     if (linearization_ != nullptr) {
       const auto n = static_cast<std::size_t>(moved_.size());
@@ -60,7 +62,7 @@ class StepJacobian {
       const double here = moved_[j];
       double scale = std::max(std::abs(here), std::abs(h * slope[j]));
       if (!(scale > 0)) scale = 1;
-      moved_[j] = here + root * scale;
+      moved_[j] = here + std::max(root * scale, least);
       const Evaluation e = evaluate(t, moved_, slope_);
       if (!e.ok()) return e;
       const Eigen::Index first = second_order_ ? positions_ : 0;
@@ -133,8 +135,10 @@ class ShiftedSystem {
     matrix_.diagonal().array() += mu;
     lu_.compute(matrix_);
   }
+  /// μ.
+  [[nodiscard]] Scalar shift() const { return mu_; }
   /// Replaces r by the solution.
-  void solve(Vector& r) {
+  void solve(Vector& r) const {
     if (!jacobian_.second_order()) {
       right_ = lu_.solve(r);
       r = right_;
@@ -155,7 +159,7 @@ class ShiftedSystem {
   Scalar mu_ = 1;
   Matrix matrix_;
   Eigen::PartialPivLU<Matrix> lu_;
-  Vector right_;
+  mutable Vector right_;
 };
 
 // Compiled once, in collocation.cpp.

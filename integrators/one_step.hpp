@@ -39,6 +39,7 @@ class OneStep : public Stepper, public ClosingStepper {
     check_size(start);
     if (loops_ != nullptr) {
       energy_ = equations.make_observation();
+      opened_ = change_ = smallest_ = Eigen::ArrayXd::Zero(size_);
       loops_->close(state_.y, closing_work_);
     } else {
       equations_.normalize(state_.y);
@@ -82,7 +83,7 @@ class OneStep : public Stepper, public ClosingStepper {
       if (loops_ == nullptr) {
         equations_.normalize(out);
       } else {
-        loops_->close(out, closing_work_);
+        close(values);
       }
     }
   }
@@ -107,6 +108,10 @@ class OneStep : public Stepper, public ClosingStepper {
     memory(closed_.energy);
     memory(apart_);
   }
+
+  /// Of the changes to y that close its loops, the smallest in the sense of M, those that close them as well, but for
+  /// their square, and stress less, in place. \returns whether there are any.
+  virtual bool soften(Eigen::ArrayXd& /*change*/) const { return false; }
 
   /// The interpolant at fraction theta in (0, 1) of the last accepted step.
   virtual void inside(double theta, Values values) const = 0;
@@ -190,7 +195,7 @@ class OneStep : public Stepper, public ClosingStepper {
     if (!finite(values)) return;
     equations_.normalize(y);
     const double before = energy(y);
-    const Closing closing = loops_->close(y, closing_work_);
+    const Closing closing = close(values);
     open_ = !closing.closed;
     apart_next_ = closing.apart;
     closing_ = {closing.gap, energy(y) - before};
@@ -273,6 +278,26 @@ class OneStep : public Stepper, public ClosingStepper {
     apart_ = false;
   }
 
+  /// Closes the loops of a state. The smallest changes in the sense of M put gaps into what is light, as stiff modes of
+  /// flexible bodies, and forces far greater than any of the motion follow: softened changes have none.
+  template <class State>
+  Closing close(State& state) const {
+    const std::span<double> y(state.data(), static_cast<std::size_t>(size_));
+    opened_ = state;
+    Closing closing = loops_->close(y, closing_work_);
+    change_ = state - opened_;
+    if (!closing.closed || !soften(change_) || !finite(change_)) return closing;
+    smallest_ = state;
+    state = opened_ + change_;
+    const Closing softly = loops_->close(y, closing_work_);
+    if (softly.closed) {
+      closing.apart = softly.apart;
+    } else {
+      state = smallest_;
+    }
+    return closing;
+  }
+
   [[nodiscard]] double energy(std::span<const double> y) {
     energy_->observe(y);
     const Energies e = energy_->energies();
@@ -283,11 +308,12 @@ class OneStep : public Stepper, public ClosingStepper {
   const ClosedLoops* loops_;   ///< null: the equations are a tree's
   const StagedSteps* staged_;  ///< null: stages are evaluated one by one
   mutable Work work_, closing_work_;
-  std::unique_ptr<Observation> energy_;  ///< where loops are closed
-  ClosingRecord closing_, closed_;       ///< of the step being tried, and of all that were accepted
-  mutable bool open_ = false;            ///< the end of the step being tried cannot be closed
-  bool apart_next_ = false;              ///< it is closed as Closing::apart
-  bool apart_ = false;                   ///< so is state_, and no step follows
+  std::unique_ptr<Observation> energy_;                ///< where loops are closed
+  mutable Eigen::ArrayXd opened_, change_, smallest_;  ///< there: of `close`
+  ClosingRecord closing_, closed_;                     ///< of the step being tried, and of all that were accepted
+  mutable bool open_ = false;                          ///< the end of the step being tried cannot be closed
+  bool apart_next_ = false;                            ///< it is closed as Closing::apart
+  bool apart_ = false;                                 ///< so is state_, and no step follows
   Eigen::Index size_;
   double limit_ = std::numeric_limits<double>::infinity();   ///< of the step
   double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which it may evaluate

@@ -62,7 +62,7 @@ class RadauStepper final : public AdaptiveStepper {
     CollocationStages::Result r;
     do {
       if (!known_) {
-        if (const Evaluation e = jacobian_.update(t, h, y(), slope_, rates); !e.ok()) return {e};
+        if (const Evaluation e = jacobian_.update(t, h, y(), slope_, rates, options_.control.atol); !e.ok()) return {e};
         known_ = fresh_ = true;
         stages_.refactorize();
       }
@@ -111,6 +111,22 @@ class RadauStepper final : public AdaptiveStepper {
     return {evaluate(t + h, next_, next_slope_), ratio};
   }
 
+  /// With J = ∂f/∂y, whose accelerations keep the rates at which loops open, μ (μ − J)⁻¹ changes nothing of how far a
+  /// change of positions, or of speeds, closes loops. Of M⁻¹ Gᵀ c it makes (M + D/μ + K/μ²)⁻¹ Gᵀ c of speeds, and of
+  /// positions the same with M + D/μ before it: twice, what damping has left of stiff modes goes too.
+  bool soften(Eigen::ArrayXd& change) const override {
+    const auto soften_part = [&](Eigen::Index from, Eigen::Index count) {
+      filtered_.setZero();
+      filtered_.segment(from, count) = stages_.real_system().shift() * change.segment(from, count).matrix();
+      stages_.real_system().solve(filtered_);
+      change.segment(from, count) = filtered_.segment(from, count).array();
+    };
+    soften_part(0, jacobian_.positions());
+    soften_part(0, jacobian_.positions());
+    soften_part(jacobian_.positions(), jacobian_.speeds());
+    return true;
+  }
+
   /// (γ/h − J)⁻¹ (f + Σ e_i z_i / h), bounded where h J is large (IV.8, equation 8.19).
   void estimate(const Eigen::MatrixXd& z, double h, const Eigen::ArrayXd& slope) {
     static const Eigen::Vector3d e{-(13 + 7 * std::sqrt(6.0)) / 3, (-13 + 7 * std::sqrt(6.0)) / 3, -1.0 / 3};
@@ -157,7 +173,7 @@ class RadauStepper final : public AdaptiveStepper {
   StepJacobian jacobian_;
   CollocationStages stages_;
   Eigen::ArrayXd tolerance_, trial_;
-  Eigen::VectorXd filtered_;
+  mutable Eigen::VectorXd filtered_;
   Eigen::MatrixXd kept_;                                ///< stages of the last accepted step
   bool known_ = false, fresh_ = false, stale_ = false;  ///< the Jacobian: is there; of this state; to be found anew
   bool first_ = true, rejected_ = false;                ///< no step since the start; the last trial was too inaccurate

@@ -15,9 +15,6 @@ std::string note_on_jumps(const Model& model, const std::vector<double>& times) 
       model.loads().size() == loops && model.motions().empty()
           ? " s: what moves there is fast beside the rest"
           : " s: something changes there within a step, as where a stop is met or a load jumps without declaring it";
-  // Closing changes what implicit steps longer than the periods of modes leave at rest.
-  if (loops > 0 && !model.layout().bodies.empty())
-    text += "; or closing the loops after long steps sets stiff modes in motion: another integrator tells";
   return text + ".";
 }
 

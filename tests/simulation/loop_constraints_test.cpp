@@ -200,14 +200,11 @@ TEST(ClosedLoops, ALoadThatFollowsAReactionOfItsOwnInstantIsRefused) {
 }
 
 TEST(ClosedLoops, ANoteOnRejectedStepsNamesWhatMayBeThere) {
-  const std::string closing = "closing the loops after long steps sets stiff modes in motion";
   const auto note = [](const std::string& scene) { return note_on_jumps(*Made(scene).scene.model, {1.0}); };
-  const std::string loaded = four_bar(beam_coupler, "radau"), rigid = four_bar(rigid_coupler, "radau");
-  EXPECT_THAT(note(loaded), testing::AllOf(testing::HasSubstr("a load jumps"), testing::HasSubstr(closing)));
-  EXPECT_THAT(note(rigid),
-              testing::AllOf(testing::HasSubstr("a load jumps"), testing::Not(testing::HasSubstr(closing))));
+  const std::string loaded = four_bar(rigid_coupler, "radau");
+  EXPECT_THAT(note(loaded), testing::HasSubstr("a load jumps without declaring it."));
   const std::string torque = "loads:\n  torque: {type: hinge-effort, hinge: motor, law: constant, value: 1.5}\n";
-  EXPECT_THAT(note(replaced(rigid, torque, "")), testing::HasSubstr("what moves there is fast beside the rest."));
+  EXPECT_THAT(note(replaced(loaded, torque, "")), testing::HasSubstr("what moves there is fast beside the rest."));
 }
 
 TEST(ClosedLoops, AllFaultsOfConstraintsAreReportedWhereTheyStand) {
