@@ -156,13 +156,7 @@ class Beam final : public Body, public TurnedSections, private Rod {
     }
     return parts;
   }
-  const Rod* rod() const override {
-    // The exact rod is clamped at x = 0. Shape functions that vanish there leave rounding, at most 1e-12 of a mode's
-    // size.
-    const LinearFields root = linear_fields(strains_, 0);
-    const double moved = root.phi.cwiseAbs().sum() + length_ * root.psi.cwiseAbs().sum();
-    return shape_.modes() > 0 && moved < 1e-9 * static_cast<double>(shape_.modes()) ? this : nullptr;
-  }
+  const Rod* rod() const override { return shape_.modes() > 0 ? this : nullptr; }
 
  private:
   [[nodiscard]] PointExpansion expansion_at(double x, const LinearFields& f) const {

@@ -152,8 +152,8 @@ std::string bent_remedy(const Prepared& prepared, const RunSummary& summary) {
   if (!can_be_exact(prepared.model()))
     return fmt::format(
         " What to do: bodies were bent by {:.2g} of their length, and beyond a tenth no formulation holds but exact, "
-        "which a body here does not offer: write what is slender as a beam whose modes are clamped at its root, or "
-        "keep bodies from bending so far, by stiffness or by smaller loads.",
+        "which a body here does not offer: write what is slender as a beam, or keep bodies from bending so far, by "
+        "stiffness or by smaller loads.",
         most);
   return fmt::format(
       " What to do: use --formulation exact, which no deflection limits: bodies were bent by {:.2g} of their "

@@ -91,12 +91,24 @@ M3<S> turned(const RodTable& table, M3<S> R, const std::vector<RodTable::Piece>&
   return R;
 }
 
+/// The root of a rod whose modes turn it: R, w_i, b.
+template <class S>
+PointMotionOf<S> root_motion(const RodTable& table, const VX<S>& q, const VX<S>& q_dot) {
+  return point_motion<S>(*table.root, StrainOrder::linear, q, q_dot);
+}
+
+/// R at x = 0.
+template <class S>
+M3<S> root_turn(const RodTable& table, const VX<S>& q) {
+  return table.root ? root_motion<S>(table, q, VX<S>::Zero(q.size())).R : M3<S>(M3<S>::Identity());
+}
+
 /// R at every node.
 template <class S>
 std::vector<M3<S>> rotations(const RodTable& table, const VX<S>& q) {
   std::vector<M3<S>> R;
   for (const std::vector<RodTable::Piece>& pieces : table.to_node)
-    R.push_back(turned<S>(table, R.empty() ? M3<S>(M3<S>::Identity()) : R.back(), pieces, q));
+    R.push_back(turned<S>(table, R.empty() ? root_turn<S>(table, q) : R.back(), pieces, q));
   return R;
 }
 
@@ -131,10 +143,20 @@ RodMotionOf<S>::RodMotionOf(const RodTable& table, const Vector& q, const Vector
   const Eigen::Index n = q.size();
   const Eigen::Index w = 3, P = w + 3 * n, b = P + 3 * n, a = b + 3;
   slopes_ = at_nodes_ = Matrix::Zero(nodes, a + 3);
+  if (table.root) {
+    const PointMotionOf<S> root = root_motion<S>(table, q, q_dot);
+    root_ = RowVector::Zero(a + 3);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Vector3 psi = table.root->psi.col(i);
+      root_.template segment<3>(w + 3 * i) = (root.W.col(i) - psi.cast<S>()).transpose();
+    }
+    root_.template segment<3>(b) = root.w_bias.transpose();
+  }
   const auto integrate = [&](Eigen::Index column, Eigen::Index count) {
     at_nodes_.middleCols(column, count) = by_columns(slopes_.middleCols(column, count), [&](const Eigen::MatrixXd& m) {
       return table.quadrature.running_integral(m);
     });
+    if (table.root) at_nodes_.middleCols(column, count).rowwise() += root_.segment(column, count);
   };
   for (Eigen::Index k = 0; k < nodes; ++k) {
     const M3<S>& R = R_[static_cast<std::size_t>(k)];
@@ -209,9 +231,10 @@ PointMotionOf<S> RodMotionOf<S>::at(double x) const {
   const auto next = static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), x) - nodes.begin());
   const double from = next > 0 ? nodes[next - 1] : 0.0;
   const M3<S> R =
-      turned<S>(table_, next > 0 ? R_[next - 1] : M3<S>(M3<S>::Identity()), table_.pieces_between(from, x), q_);
-  const RowVector integrals =
+      turned<S>(table_, next > 0 ? R_[next - 1] : root_turn<S>(table_, q_), table_.pieces_between(from, x), q_);
+  RowVector integrals =
       by_columns(slopes_, [&](const Eigen::MatrixXd& m) { return table_.quadrature.integral_to(x, m); });
+  if (table_.root) integrals += root_;
   return motion(R, integrals, x, table_.rod->section(x));
 }
 

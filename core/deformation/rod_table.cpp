@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace withy {
 
@@ -50,6 +51,18 @@ std::vector<double> lagrange(const double* nodes, double x) {
     for (std::size_t m = 0; m < values.size(); ++m)
       if (m != j) values[j] *= (x - nodes[m]) / (nodes[j] - nodes[m]);
   return values;
+}
+
+/// RodTable::root, which rounding of functions that vanish there does not turn.
+std::optional<PointExpansion> turning_root(const Rod& rod, const std::vector<RodSection>& sections) {
+  constexpr double rounding = 1e-9;
+  Matrix3X rotation = rod.section(0).rotation;
+  double greatest = 0;
+  for (const RodSection& s : sections) greatest = std::max(greatest, s.rotation.cwiseAbs().maxCoeff());
+  if (!(rotation.cwiseAbs().maxCoeff() > rounding * greatest)) return {};
+  PointExpansion root = PointExpansion::rigid(Vector3::Zero(), rotation.cols());
+  root.psi = std::move(rotation);
+  return root;
 }
 
 /// Masses and inertias of a rod beyond a point of it, at the nodes of panels that go over kinks of these.
@@ -105,6 +118,7 @@ RodTable::RodTable(const Rod& given)
     }
   }
   add_sections();
+  root = turning_root(given, sections);
 }
 
 void RodTable::add_sections() {

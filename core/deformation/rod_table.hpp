@@ -2,9 +2,11 @@
 /// A rod at the nodes of a quadrature: the discretization of exact kinematics, the same for every way to evaluate it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "withy/core/plugin/rod.hpp"
+#include "withy/core/shape/modal_shape.hpp"
 #include "withy/core/shape/panel_quadrature.hpp"
 
 namespace withy {
@@ -43,6 +45,7 @@ struct RodTable {
 
   const Rod* rod;
   PanelQuadrature quadrature;
+  std::optional<PointExpansion> root;       ///< where modes turn it: ψ_i(0), all other fields zero
   std::vector<RodSection> sections;         ///< at the nodes
   std::vector<double> masses;               ///< of the nodes [kg]
   std::vector<Matrix3> inertias;            ///< rotary, of the nodes, about their centres, section axes [kg m²]

@@ -260,8 +260,8 @@ void Model::require_rods(const Terms& scene) const {
     const Rod* const rod = node.body->rod();
     if (rod == nullptr)
       throw std::invalid_argument("body '" + node.name +
-                                  "' has no exact kinematics: a beam offers it whose modes are clamped at its root; "
-                                  "give it a formulation of its own");
+                                  "' has no exact kinematics, which slender bodies offer, as a beam: give it a "
+                                  "formulation of its own");
     if (!sound.insert(node.body.get()).second) continue;
     if (const std::string fault = find_fault(*rod, node.body->shape()); !fault.empty())
       throw std::invalid_argument("the rod that body '" + node.name +

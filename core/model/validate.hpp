@@ -39,10 +39,10 @@ std::string find_fault(const Hinge& hinge);
 /// motion throws comes out.
 std::string find_fault(const Motion& motion);
 /// What is wrong with the rod of a body, or empty: other modes, another mass or other deflections than the body's, a
-/// length or wave number that is none, kinks that do not increase inside it, sections that are not finite, without
-/// clamped root or of an inertia that none has, and rotations and deflections that are not the integrals of its
-/// strains. Integrals are compared with differences over steps of 1e-2 of 1/β and less, to 1e-4 of the greatest; where
-/// these do not tell (false_slope.hpp), as at a kink, nothing is said.
+/// length or wave number that is none, kinks that do not increase inside it, sections that are not finite or
+/// of an inertia that none has, a root that is apart from what is next to it, and rotations and deflections that are
+/// not the integrals of its strains. Integrals are compared with differences over steps of 1e-2 of 1/β and less, to
+/// 1e-4 of the greatest; where these do not tell (false_slope.hpp), as at a kink, nothing is said.
 std::string find_fault(const Rod& rod, const ModalShape& shape);
 /// What is wrong with the numbers that a sensor says it gives, or empty: none at all, two of one name, a name or unit
 /// that the head of a table cannot hold, as one with a comma.

@@ -105,10 +105,7 @@ TEST_P(TangentsOf, random_trees_in_a_plane_are_the_derivatives_of_the_dense_equa
                        seed);
 }
 
-/// Not `exact`: a rod's exact kinematics begins at a clamped root.
-class TangentsOfEveryFamily : public testing::TestWithParam<std::string> {};
-
-TEST_P(TangentsOfEveryFamily, random_trees_are_the_derivatives_of_the_dense_equations) {
+TEST_P(TangentsOf, random_trees_of_every_family_are_the_derivatives_of_the_dense_equations) {
   for (unsigned seed = 1; seed <= trees(GetParam(), 6); ++seed)
     expect_derivatives(
         AnalysedScene(seed, {.bodies = 2 + static_cast<int>(seed % 4), .any_root = true, .any_family = true},
@@ -152,14 +149,7 @@ std::string name_of_formulation(const testing::TestParamInfo<std::string>& param
   return name;
 }
 
-std::vector<std::string> all_but_exact() {
-  std::vector<std::string> names(std::begin(all_formulations), std::end(all_formulations));
-  std::erase(names, "exact");
-  return names;
-}
-
 INSTANTIATE_TEST_SUITE_P(Formulations, TangentsOf, testing::ValuesIn(all_formulations), name_of_formulation);
-INSTANTIATE_TEST_SUITE_P(Formulations, TangentsOfEveryFamily, testing::ValuesIn(all_but_exact()), name_of_formulation);
 
 }  // namespace
 }  // namespace withy::test

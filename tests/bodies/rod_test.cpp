@@ -42,6 +42,21 @@ std::unique_ptr<Body> rod_like_beam() {
                             {"torsion", strain(30, 2, 0.002)}});
 }
 
+/// In functions that turn the root about all three axes, and move it.
+std::unique_ptr<Body> beam_with_a_turning_root() {
+  Registry registry;
+  enroll_static_plugins(registry);
+  Value pinned = strain(40, 3), free = strain(25, 2), twisting = strain(30, 2, 0.002);
+  pinned.set("family", Value(std::string("pinned-pinned")));
+  for (Value* of : {&free, &twisting}) of->set("family", Value(std::string("free-free")));
+  return make_plugin<Body>(registry, "beam",
+                           {{"length", Value(1.3)},
+                            {"mass_per_length", Value(0.7)},
+                            {"bending_y", pinned},
+                            {"bending_z", free},
+                            {"torsion", twisting}});
+}
+
 /// The same with extension and shear, 13 modes, and rotary inertia in bending.
 std::unique_ptr<Body> stretching_beam() {
   Registry registry;
@@ -64,6 +79,25 @@ std::unique_ptr<Body> stretching_beam() {
                             {"shear_z", polynomials(800)}});
 }
 
+/// The rod of the same strains that is clamped at its root.
+class ClampedRod final : public Rod {
+ public:
+  explicit ClampedRod(const Rod& rod) : rod_(rod), root_(rod.section(0)) {}
+  Eigen::Index modes() const override { return rod_.modes(); }
+  double length() const override { return rod_.length(); }
+  double wave_number() const override { return rod_.wave_number(); }
+  RodSection section(double x) const override {
+    RodSection s = rod_.section(x);
+    s.rotation -= root_.rotation;
+    s.deflection -= root_.deflection + x * skew<double>(Vector3::UnitX()).transpose() * root_.rotation;
+    return s;
+  }
+
+ private:
+  const Rod& rod_;
+  RodSection root_;
+};
+
 /// Exact kinematics as PointKinematics, at some places along the rod.
 class ExactKinematics final : public PointKinematics {
  public:
@@ -85,7 +119,7 @@ class ExactKinematics final : public PointKinematics {
 };
 
 TEST(Rod, partial_velocities_and_biases_are_derivatives) {
-  for (const auto& body : {rod_like_beam(), stretching_beam()}) {
+  for (const auto& body : {rod_like_beam(), stretching_beam(), beam_with_a_turning_root()}) {
     ASSERT_NE(body->rod(), nullptr);
     expect_kinematics_conforms(ExactKinematics(*body->rod()));
   }
@@ -124,7 +158,7 @@ void expect_second_order_of_the_beam(const Body& beam) {
   const Body* body = &beam;
   const RodTable table(*body->rod());
   const Eigen::Index n = body->shape().modes();
-  for (const double x : {0.31, 0.9, 1.3}) {
+  for (const double x : {0.0, 0.31, 0.9, 1.3}) {
     const PointExpansion e = *body->station(x);
     const auto motion = [&](Eigen::Index j, double h) {
       return RodMotion(table, h * Eigen::VectorXd::Unit(n, j), Eigen::VectorXd::Zero(n)).at(x);
@@ -161,6 +195,30 @@ TEST(Rod, second_order_expansion_is_that_of_the_beam_in_two_planes_with_twist) {
 }
 TEST(Rod, second_order_expansion_is_that_of_the_beam_with_extension_and_shear) {
   expect_second_order_of_the_beam(*stretching_beam());
+}
+TEST(Rod, second_order_expansion_is_that_of_the_beam_whose_root_turns_about_all_axes) {
+  expect_second_order_of_the_beam(*beam_with_a_turning_root());
+}
+
+/// Turned at its root by θ, the rod is the clamped one of the same strains, turned and moved as a whole: to 1e-9 of the
+/// length, as the quadrature leaves it.
+TEST(Rod, with_a_turning_root_is_the_clamped_one_as_a_whole_turned_and_moved) {
+  const auto body = beam_with_a_turning_root();
+  const ClampedRod clamped(*body->rod());
+  const RodTable turning(*body->rod()), still(clamped);
+  ASSERT_TRUE(turning.root.has_value());
+  ASSERT_FALSE(still.root.has_value());
+  Eigen::VectorXd q(7);
+  q << 0.2, -0.03, 0.02, 0.1, 0.04, 0.3, -0.2;
+  const RodMotion a(turning, q, Eigen::VectorXd::Zero(7)), b(still, q, Eigen::VectorXd::Zero(7));
+  const Vector3 theta = turning.root->psi * q;
+  EXPECT_GT(theta.norm(), 0.5);
+  const Matrix3 R = Eigen::AngleAxisd(theta.norm(), theta.normalized()).toRotationMatrix();
+  const Vector3 moved = body->rod()->section(0).deflection * q;
+  for (const double x : {0.0, 0.4, 1.3}) {
+    EXPECT_LT((a.at(x).r - moved - R * b.at(x).r).norm(), 1.3e-9) << x;
+    EXPECT_LT((a.at(x).R - R * b.at(x).R).norm(), 1e-12) << x;
+  }
 }
 
 /// Cantilever of unit length and EI with n clamped-free modes.

@@ -200,13 +200,14 @@ TEST(Closure, holds_for_every_body_of_random_trees) {
   const std::string fields =
       "  star: {type: point-gravity, parameter: 30, center: [0.5, -2, 6]}\n"
       "  axes: {type: rotating-frame, axis: [1, 2, -2], rate: 0.8, acceleration: 0.6}\n";
-  for (unsigned seed = 1; seed <= 100; ++seed) {
+  for (unsigned seed = 1; seed <= 130; ++seed) {
     const std::string& formulation = untruncated[seed % 3];
     const int bodies = 3 + static_cast<int>(seed % 5);
     const bool planar = seed % 4 == 0;
     RandomScene random(seed, {.bodies = bodies,
                               .planar = planar,
                               .any_root = seed % 2 == 0 && formulation != "exact",
+                              .any_family = seed > 100,
                               .rotary = seed % 7 < 3,
                               .stretching = seed % 7 > 1 && seed % 7 < 5});
     Case c(random.text() + (planar ? "" : frame_loads(seed, bodies) + (seed % 5 < 2 ? fields : "")), formulation);

@@ -24,7 +24,8 @@ bool begins(const std::string& text, const std::string& with) { return text.star
 /// A rod of length 1 and 2 kg/m that bends as x² (deflection x², rotation 2x, curvature 2), or says something else.
 class Bent final : public withy::Rod {
  public:
-  double length_ = 1, wave_number_ = 2, mass_per_length = 2, strain = 2, rotation = 2, deflection = 1, root = 0;
+  double length_ = 1, wave_number_ = 2, mass_per_length = 2, strain = 2, rotation = 2, deflection = 1, root = 0,
+         turn = 0;
   Eigen::Index modes_ = 1, columns = 1, elongations = 0;
   std::vector<double> kinks_;
   withy::Matrix3 inertia = withy::Matrix3::Zero();
@@ -36,8 +37,8 @@ class Bent final : public withy::Rod {
     const withy::Matrix3X none = withy::Matrix3X::Zero(3, columns);
     withy::RodSection s{none, none, none, mass_per_length, inertia};
     s.strain(2, 0) = strain;
-    s.rotation(2, 0) = rotation * x + root;
-    s.deflection(1, 0) = deflection * x * x;
+    s.rotation(2, 0) = rotation * x + turn + (x == 0 ? root : 0);
+    s.deflection(1, 0) = deflection * x * x + turn * x;
     s.elongation = withy::Matrix3X::Zero(3, elongations);
     return s;
   }
@@ -104,9 +105,11 @@ TEST(ValidateFields, names_rods_whose_fields_are_no_integrals_or_not_those_of_th
   const std::string moved = fault([](Bent& r) { r.deflection = 3; });
   EXPECT_TRUE(begins(moved, "rotation x e_x with elongation at x = 0.137174 m of mode 1 is (")) << moved;
   const std::string root = fault([](Bent& r) { r.root = 0.1; });
-  EXPECT_TRUE(begins(root, "the rotation at x = 0 of mode 1 is (  0   0 0.1); it is clamped there, need") ||
-              begins(root, "the rotation at x = 0 of mode 1 is (0 0 0.1); it is clamped there, need"))
+  EXPECT_TRUE(begins(root, "the rotation at x = 0 of mode 1 is (  0   0 0.1); next to it (") ||
+              begins(root, "the rotation at x = 0 of mode 1 is (0 0 0.1); next to it ("))
       << root;
+  const std::string turned_whole = fault([](Bent& r) { r.turn = 0.1; });
+  EXPECT_TRUE(begins(turned_whole, "the deflection at x = 0.330009 m of mode 1 is (")) << turned_whole;
   const std::string other = fault([](Bent& r) { r.strain = 4, r.rotation = 4, r.deflection = 2; });
   EXPECT_TRUE(begins(other, "the deflection at x = 0.330009 m of mode 1 is (")) << other;
   EXPECT_EQ(fault([](Bent& r) { r.length_ = 2; }), "its mass is 4 kg, that of the body's particles 2 kg");

@@ -58,7 +58,7 @@ TEST(ClosedLoops, ErrorsOfAFlexibleLinkageFallWithTheOrderOfTheIntegrator) {
 
 TEST(ClosedLoops, EnergyIsConservedInAllFormulationsThatConserveItInTrees) {
   for (const char* formulation : {"quadratic", "exact"}) {
-    const std::string text = replaced(four_bar(clamped_coupler, "{name: dop853, rtol: 1e-10, atol: 1e-12}"),
+    const std::string text = replaced(four_bar(beam_coupler, "{name: dop853, rtol: 1e-10, atol: 1e-12}"),
                                       "law: constant, value: 1.5", "law: constant, value: 0");
     const Made made(text, formulation);
     const RunSummary summary = run(made, 1.0);

@@ -74,10 +74,6 @@ constexpr const char* rigid_coupler =
 constexpr const char* beam_coupler =
     "{type: beam, length: 1.0, mass_per_length: 0.54, bending_y: {stiffness: 20.0, modes: 2, family: pinned-pinned}}";
 
-/// In a rod's coordinates, which exact kinematics has.
-constexpr const char* clamped_coupler =
-    "{type: beam, length: 1.0, mass_per_length: 0.54, bending_y: {stiffness: 20.0, modes: 3, family: clamped-free}}";
-
 /// That linkage in the angle of its crank alone: crank r, coupler c, rocker s, their pivots d apart.
 class Linkage {
   static constexpr double r = 0.3, c = 1.0, s = 0.8, d = 0.9;

@@ -263,6 +263,12 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   const Matrix3& R = frame.R;
   direction = Spatial::position(R.col(0));
   const std::size_t n = spec.modes;
+  if (table.root) {
+    std::vector<Triple> turns;
+    for (Eigen::Index i = 0; i < table.root->psi.cols(); ++i)
+      turns.push_back(Spatial::angle(R * table.root->psi.col(i)));
+    root = std::move(turns);
+  }
   const std::vector<double>& nodes = table.quadrature.nodes();
   std::vector<Pack> places(static_cast<std::size_t>(integrals.packs) * 3);
   std::vector<Pack> linear(static_cast<std::size_t>(integrals.packs) * n * 12);

@@ -2,19 +2,21 @@
 /// Exact kinematics of a rod in the sweeps: constants, in the axes of its node, and its sections at one state, four
 /// quadrature nodes a Pack.
 ///
-/// With u_i = R κ_i, e_i = R γ_i, ω = Σ w_i q̇_i and t = R (e_x + γ) along the axis, integrals from the clamped root
-/// give
+/// With u_i = R κ_i, e_i = R γ_i, ω = Σ w_i q̇_i and t = R (e_x + γ) along the axis, integrals from the root give
 ///   r′ = t,   w_i′ = u_i,   P_i′ = w_i × t + e_i,   b′ = ω × Σ u_i q̇_i,   a′ = b × t + ω × (ω × t + 2 Σ e_i q̇_i):
 /// position, partial velocities, and what remains of the accelerations at q̈ = 0. In a plane R is the turn by
 /// Σ ψ_i q_i, w_i = ψ_i and b = 0. What r, w_i, P_i are to first order, X + Φ q, ψ_i, Φ_i, is tabulated; the rest is
-/// integrated, as RodTable says. Most rods have no γ and spend nothing on it.
+/// integrated, as RodTable says: from zero on, but in space from that of the root's turn (rod_root.hpp). Most rods have
+/// no γ and no turn of the root, and spend nothing on them.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "withy/core/sweep/rod/rod_integrals.hpp"
+#include "withy/core/sweep/rod/rod_root.hpp"
 #include "withy/core/sweep/rod/rod_rotation.hpp"
 #include "withy/core/sweep/rod/rotary_table.hpp"
 
@@ -58,6 +60,7 @@ template <>
 struct RodKinematics<Spatial> {
   RodIntegrals integrals;
   Triple direction = Triple::zero();  ///< of the undeformed rod
+  SharedNumbers<Triple> root;         ///< ψ_i(0); empty: modes do not turn the root
   SharedNumbers<Pack> X;              ///< undeformed place of node pack k: element 3k
   SharedNumbers<Pack> first;          ///< κ_i, ψ_i, Φ_i′, Φ_i at node pack k: element (k·n + i)·12
   SharedNumbers<Pack> elongation;     ///< γ_i, axes of the node, at node pack k: element (k·n + i)·3; empty: none
@@ -197,8 +200,10 @@ template <int N>
 }
 
 /// Turns of the rod's sections at the nodes and stations: from node to node four at a time, then one after the other.
+/// \param root  null: it does not turn
 template <int N>
-inline void rod_turns(const RodKinematics<Spatial>& rod, int modes, const double* q, Pack* rotation) {
+inline void rod_turns(const RodKinematics<Spatial>& rod, int modes, const double* q, const RootTurn* root,
+                      Pack* rotation) {
   const int n = count<N>(modes);
   const Pack* moments = rod.step.data();
   for (std::size_t s = 0; s < rod.steps; s += lanes) {
@@ -214,13 +219,19 @@ inline void rod_turns(const RodKinematics<Spatial>& rod, int modes, const double
     transpose(exponential(magnus(m0, m1, m2)), rotation + s);  // the last may hold turns by nothing
   }
   const Pack* piece = rotation + rod.after.size();
+  const Pack first = root != nullptr ? root->quaternion() : spread(0.0);
   for (std::size_t s = 0; s < rod.after.size(); ++s) {
     const int last = rod.pieces[s];
     Pack turn = last > 0 ? *piece : rotation[s];
     for (int k = 1; k < last; ++k) turn = product(turn, piece[k]);
     if (last > 0) turn = product(turn, rotation[s]);
     piece += last;
-    rotation[s] = rod.after[s] >= 0 ? product(rotation[rod.after[s]], turn) : turn;
+    if (rod.after[s] >= 0) {
+      turn = product(rotation[rod.after[s]], turn);
+    } else if (root != nullptr) {
+      turn = product(first, turn);
+    }
+    rotation[s] = turn;
   }
 }
 
@@ -343,16 +354,28 @@ inline PackVector inertia_axis(const RodKinematics<Spatial>& rod, int modes, int
   return rotation(untransposed(work.rotation + 4 * k)) * PackVector{axis.e[0], axis.e[1], axis.e[2]};
 }
 
+/// Adds a vector to the values of a function at all nodes.
+inline void add_everywhere(const RodKinematics<Spatial>& rod, int function, const Triple& v, const RodWork& work) {
+  const int packs = rod.integrals.packs;
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < packs; ++k) work.value[(function + c) * packs + k] += spread(v[c]);
+}
+
 template <int N>
 [[gnu::noinline]] inline void rod_motion(const RodKinematics<Spatial>& rod, int modes, const double* q,
                                          const double* q_dot, const RodWork& work) {
   using Rod = RodKinematics<Spatial>;
   const int n = count<N>(modes), packs = rod.integrals.packs;
-  rod_turns<N>(rod, modes, q, work.rotation);
+  std::optional<RootTurn> root;
+  if (!rod.root.empty()) root.emplace(rod.root, n, q, q_dot);
+  rod_turns<N>(rod, modes, q, root ? &*root : nullptr, work.rotation);
   rod_slopes<N>(rod, modes, q, work);
   rod.integrals.integrate(work.slope, work.value, Rod::P(n));
+  for (int i = 0; root && i < n; ++i)
+    add_everywhere(rod, Rod::w + 3 * i, root->beyond(rod.root[static_cast<std::size_t>(i)]), work);
   rod_rates<N>(rod, modes, q, q_dot, work);
   rod.integrals.integrate(work.slope + Rod::P(n) * packs, work.value + Rod::P(n) * packs, 3 * n + 3);
+  if (root) add_everywhere(rod, Rod::b(n), root->bias(), work);
   rod_bias<N>(rod, modes, work);
   rod.integrals.integrate(work.slope + Rod::a(n) * packs, work.value + Rod::a(n) * packs, 3);
 }

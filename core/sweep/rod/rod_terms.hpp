@@ -2,6 +2,8 @@
 /// What a rod at one state gives to the symmetric sweep: its mass integrals and its stations.
 #pragma once
 
+#include <optional>
+
 #include "withy/core/sweep/rod/rod_kinematics.hpp"
 #include "withy/core/sweep/rod/rotary_terms.hpp"
 #include "withy/core/sweep/station_motion.hpp"
@@ -159,6 +161,8 @@ inline void rod_station_motion(const RodKinematics<Spatial>& rod, std::size_t st
   const PackMatrix R = rotation({spread(turn[0]), {spread(turn[1]), spread(turn[2]), spread(turn[3])}});
   for (int j = 0; j < 3; ++j) out.frame.R.c[j] = Triple(R.column[j][0][0], R.column[j][1][0], R.column[j][2][0]);
   const RodStation<Spatial>& at = rod.stations[station];
+  std::optional<RootTurn> root;
+  if (!rod.root.empty()) root.emplace(rod.root, n, q, q_dot);
   out.frame.p = at.X + vector(0);
   const Block back = transpose(out.frame.R);
   out.rate = Spatial::Twist::zero();
@@ -166,9 +170,11 @@ inline void rod_station_motion(const RodKinematics<Spatial>& rod, std::size_t st
     const Spatial::Twist& first = at.first[static_cast<std::size_t>(i)];
     J[i] = {back * (first.w + vector(Rod::w + 3 * i)), back * (first.v + vector(Rod::P(n) + 3 * i))};
     out.frame.p += first.v * q[i];
+    if (root) J[i].w += back * root->beyond(rod.root[static_cast<std::size_t>(i)]);
     out.rate += J[i] * q_dot[i];
   }
   out.bias = {back * vector(Rod::b(n)), back * vector(Rod::a(n)) - cross(out.rate.w, out.rate.v)};
+  if (root) out.bias.w += back * root->bias();
 }
 
 }  // namespace withy::sweep
