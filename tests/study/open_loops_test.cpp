@@ -1,0 +1,39 @@
+// States whose closed loops are open, on the way to small motions and as they are given, and loops that are held.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "withy/study/linear_model.hpp"
+#include "withy/tests/simulation/four_bar.hpp"
+#include "withy/tests/study/linear_scenes.hpp"
+
+namespace withy::study {
+namespace {
+
+/// A linkage at rest with a spring at its rocker, and the force in its last pin.
+Prepared sprung_linkage(const std::vector<std::string>& changes = {},
+                        const std::string& coupler = test::rigid_coupler) {
+  SceneValues values = SceneValues::parse(test::four_bar(coupler, "dopri5"), "text");
+  values.set_text("initial.hinges.motor={position: [1.6]}");
+  values.set_text("loads.torque={type: hinge-spring, hinge: pivot, stiffness: 40, damping: 0.2, free_position: 1.5}");
+  values.set_text("outputs.pin={type: reaction, constraint: loop}");
+  for (const std::string& change : changes) values.set_text(change);
+  return prepare(std::move(values), test::plugins());
+}
+
+// Statics of the rigid frame that is left: a moment on the rocker is held by a force along the coupler.
+TEST(OpenLoops, AHeldLoopAnswersEffortsByItsReactionsAlone) {
+  const Prepared prepared = sprung_linkage();
+  const LinearModel m =
+      linear_model(Configuration(prepared, prepared.scene.initial, {{"motor"}, {}}), {{"pivot"}, {"pin"}});
+  EXPECT_TRUE(m.states.empty());
+  const test::Linkage::Place at = test::Linkage::place(1.6);
+  const double lever = 0.8 * std::sin(at.coupler - at.rocker);
+  EXPECT_NEAR(m.system.D(find(m.outputs, "pin.fx"), 0), -1 / lever, 1e-10);
+  EXPECT_NEAR(m.system.D(find(m.outputs, "pin.fy"), 0), 0, 1e-10);
+}
+
+}  // namespace
+}  // namespace withy::study
