@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/study/equilibrium.hpp"
 #include "withy/study/linear_model.hpp"
 #include "withy/tests/simulation/four_bar.hpp"
 #include "withy/tests/study/linear_scenes.hpp"
@@ -23,6 +24,17 @@ Prepared sprung_linkage(const std::vector<std::string>& changes = {},
   return prepare(std::move(values), test::plugins());
 }
 
+double greatest_gap(const Prepared& prepared, const State& state) {
+  const ClosedLoops& loops = test::loops_of(*prepared.equations);
+  const std::size_t equations = loops.closing_equations(), speeds = prepared.model().layout().speeds;
+  std::vector<double> gaps(equations), rates(equations), J(equations * speeds);
+  Work work = prepared.equations->make_work();
+  loops.see(state.y, gaps, rates, J, work);
+  double most = 0;
+  for (const double gap : gaps) most = std::max(most, std::abs(gap));
+  return most;
+}
+
 // Statics of the rigid frame that is left: a moment on the rocker is held by a force along the coupler.
 TEST(OpenLoops, AHeldLoopAnswersEffortsByItsReactionsAlone) {
   const Prepared prepared = sprung_linkage();
@@ -33,6 +45,18 @@ TEST(OpenLoops, AHeldLoopAnswersEffortsByItsReactionsAlone) {
   const double lever = 0.8 * std::sin(at.coupler - at.rocker);
   EXPECT_NEAR(m.system.D(find(m.outputs, "pin.fx"), 0), -1 / lever, 1e-10);
   EXPECT_NEAR(m.system.D(find(m.outputs, "pin.fy"), 0), 0, 1e-10);
+}
+
+TEST(OpenLoops, ASampledLoadIsNotAskedWhereNoLoopCloses) {
+  const Prepared prepared =
+      sprung_linkage({"loads.ctl={type: pid, of: pin.fx, hinge: pivot, proportional: 0.01, sample: 0.01}"});
+  const Equilibrium found = find_equilibrium(at_start(prepared), {}, test::plugins());
+  ASSERT_EQ(found.problem, "");
+  // It pushes a hundredth of that force, against it; nothing accelerates.
+  const State& state = found.steady.state;
+  EXPECT_LT(greatest_gap(prepared, state), 1e-13);
+  const LinearModel m = linear_model({prepared, state, {}}, {{}, {"pin"}});
+  EXPECT_TRUE(m.equilibrium);
 }
 
 }  // namespace
