@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "withy/study/equilibrium.hpp"
+#include "withy/study/frequencies.hpp"
 #include "withy/study/linear_model.hpp"
+#include "withy/study/variation_text.hpp"
 #include "withy/tests/simulation/four_bar.hpp"
 #include "withy/tests/study/linear_scenes.hpp"
 
@@ -57,6 +59,19 @@ TEST(OpenLoops, ASampledLoadIsNotAskedWhereNoLoopCloses) {
   EXPECT_LT(greatest_gap(prepared, state), 1e-13);
   const LinearModel m = linear_model({prepared, state, {}}, {{}, {"pin"}});
   EXPECT_TRUE(m.equilibrium);
+}
+
+TEST(OpenLoops, FrequenciesOfBodiesWithoutExactKinematicsAreReferredToQuadratic) {
+  const Prepared prepared = sprung_linkage({}, test::beam_coupler);
+  FrequencyQuestion question;
+  Point point;
+  point.formulation = "symmetric";
+  point.modes = 2;
+  question.points = {point};
+  question.sweep = parse_sweep("loads.torque.free_position=1.5:1.6:2", "sweep");
+  FrequencyStudy study(prepared, test::plugins(), question);
+  EXPECT_EQ(study.reference().formulation, "quadratic");
+  EXPECT_LT(study.error(point, study.names().front(), 1.6), 0.01);
 }
 
 }  // namespace
