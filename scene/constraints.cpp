@@ -132,7 +132,7 @@ Value close_loops(const Model& model, const Scene& scene, const Value* given, co
     const auto equations = compile_model(*scene.formulation, {std::shared_ptr<const Model>(), &model});
     const Assembly assembly = assemble(model, *equations, given_state(given, model), state);
     if (!assembly.fault.empty())
-      checker.key_error("/constraints/" + loops_of(model)[assembly.loop]->name(), assembly.fault);
+      checker.key_error((assembly.of_hinge ? "/hinges/" : "/constraints/") + assembly.name, fault_and_remedy(assembly));
     if (!assembly.remark.empty()) return Value(assembly.remark);
   } catch (const std::invalid_argument& e) {
     checker.key_error("/formulation", fmt::format("{}: {}", scene.formulation_name, e.what()));

@@ -47,6 +47,8 @@ FrequencyStudy::FrequencyStudy(const Prepared& base, Registry& registry, Frequen
       break;
     } catch (const InputError&) {
       if (formulation == formulations.back()) throw;
+    } catch (const SceneError&) {  // where loops are closed the scene's equations are asked for as it is made
+      if (formulation == formulations.back()) throw;
     }
   }
   const ModesAt& first = reference_at(value);

@@ -88,6 +88,7 @@ void look(SmallMotions& motions, const SampledLoads& sampled, const std::vector<
       by_input.col(static_cast<Eigen::Index>(k)) =
           sensed_slope(motions, inputs[k].state_at, motions.step(inputs[k].efforts));
   }
+  double uncertainty = 1e-15;  // of those asked for
   for (Eigen::Index k = 0; k < rows; ++k) {
     const LinearOutput& o = outputs[static_cast<std::size_t>(k)];
     linear.outputs.push_back(o.column);
@@ -99,10 +100,10 @@ void look(SmallMotions& motions, const SampledLoads& sampled, const std::vector<
     }
     s.C.row(k) << seen.by_state.row(o.sensed), by_held.row(o.sensed), by_told.row(o.sensed);
     s.D.row(k) = by_input.row(o.sensed);
+    uncertainty = std::max(uncertainty, seen.uncertainty[o.sensed]);
   }
   linear.output_derivatives =
-      sensors ? fmt::format("exact but for sensors, by central differences of eighth order, to {:.1g}",
-                            std::max(1e-15, seen.uncertainty))
+      sensors ? fmt::format("exact but for sensors, by central differences of eighth order, to {:.1g}", uncertainty)
               : "exact";
 }
 

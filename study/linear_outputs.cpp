@@ -144,6 +144,7 @@ SensedDerivatives sensed_derivatives(SmallMotions& motions) {
   d.values = motions.sensed(motions.state());
   const Eigen::Index rows = d.values.size(), size = motions.size();
   d.by_state.resize(rows, size);
+  d.uncertainty.setZero(rows);
   Eigen::MatrixXd change(rows, size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const Differenced column =
@@ -161,7 +162,7 @@ SensedDerivatives sensed_derivatives(SmallMotions& motions) {
   }
   for (Eigen::Index k = 0; k < rows; ++k) {
     const double most = greatest[motions.columns()[static_cast<std::size_t>(k)].unit];
-    if (most > 0) d.uncertainty = std::max(d.uncertainty, change.row(k).maxCoeff() / most);
+    if (most > 0) d.uncertainty[k] = change.row(k).maxCoeff() / most;
   }
   return d;
 }

@@ -29,7 +29,8 @@ Eigen::RowVectorXd row_of_free(const LinearOutput& output, const std::vector<Eig
 struct SensedDerivatives {
   Eigen::VectorXd values;
   Eigen::MatrixXd by_state;  ///< columns × size
-  double uncertainty = 0;    ///< greatest change of an element at the last refinement, over the greatest of its unit
+  /// One a column: greatest change of an element at the last refinement, over the greatest of its unit.
+  Eigen::VectorXd uncertainty;
 };
 /// By central differences of eighth order. \throws std::domain_error as SmallMotions::sensed
 SensedDerivatives sensed_derivatives(SmallMotions& motions);

@@ -29,9 +29,9 @@ constexpr double kept_exactly = 1e-12;
 /// A state with the equations of a change (δ of the free speeds, continuous states, what is held) that balances it.
 class Balance {
  public:
-  explicit Balance(const Configuration& at)
-      : configuration_(at),
-        motions_(at, {}),
+  explicit Balance(Configuration at)
+      : configuration_(std::move(at)),
+        motions_(configuration_, {}),
         sampled_(motions_),
         m_(static_cast<Eigen::Index>(motions_.free().size())),
         states_(motions_.size() - 2 * m_) {
@@ -180,11 +180,20 @@ Configuration at_rest(Configuration c) {
   return c;
 }
 
+/// Whether there is such a state: where its loops could not be closed it is no number, and nothing samples it.
+bool has_place(const Configuration& c) {
+  const auto first = c.state().y.begin();
+  return std::all_of(first, first + static_cast<std::ptrdiff_t>(c.layout().moving()),
+                     [](double y) { return std::isfinite(y); });
+}
+
 /// The balance a part of the change further on, where the next change is smaller; nothing where none is.
 std::unique_ptr<Balance> advanced(const Balance& here, const Eigen::VectorXd& change, Eigen::VectorXd& changed) {
   for (double part = 1; part > shortest_part; part *= 0.5) {
     const Eigen::VectorXd taken = part * here.columns().cwiseProduct(change);
-    auto there = std::make_unique<Balance>(here.moved(taken));
+    Configuration at = here.moved(taken);
+    if (!has_place(at)) continue;
+    auto there = std::make_unique<Balance>(std::move(at));
     if (!there->finite()) continue;
     const bool rounding = part == 1 && (taken.array().abs() <= 1e-9 * here.sizes().array()).all();
     if (!rounding && !(here.change(*there).norm() <= (1 - 0.25 * part) * change.norm())) continue;

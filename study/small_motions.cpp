@@ -154,7 +154,8 @@ double SmallMotions::place(Eigen::Index i) const {
 }
 
 double SmallMotions::step(const Eigen::VectorXd& efforts) const {
-  const double moved = (by_effort_ * efforts).cwiseAbs().maxCoeff();
+  const Eigen::VectorXd rates = by_effort_ * efforts;  // none where nothing is free
+  const double moved = rates.size() > 0 ? rates.cwiseAbs().maxCoeff() : 0.0;
   return moved > 0 ? 1 / moved : 1.0;
 }
 

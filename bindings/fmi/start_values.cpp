@@ -44,7 +44,8 @@ std::string Instance::settle_start() {
     const GivenState given = set_by_host(model.layout(), is_started_);
     const GivenState kept = given_state(d.prepared().scene.source.find("initial"), model);
     const Assembly closed = assemble(model, *d.prepared().equations, given, state, &kept);
-    if (!closed.fault.empty()) return "constraint '" + loops[closed.loop]->name() + "': " + closed.fault;
+    if (!closed.fault.empty())
+      return (closed.of_hinge ? "hinge '" : "constraint '") + closed.name + "': " + fault_and_remedy(closed);
     d.set_moving(std::span(state.y).first(d.states()));
   }
   begin_loads(d);

@@ -11,6 +11,7 @@
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
@@ -249,17 +250,35 @@ std::string greatest_change(const Model& model, const State& before, const State
   return most;
 }
 
-std::size_t farthest(const Model& model, const Eigen::VectorXd& gaps) {
+/// A loop with the distance of its frames, or how fast they part [m, m/s].
+struct Farthest {
+  std::string loop;
+  double distance = 0;
+};
+
+Farthest farthest(const Model& model, const Eigen::VectorXd& gaps) {
+  Farthest most;
   Eigen::Index row = 0;
-  gaps.cwiseAbs().maxCoeff(&row);
-  std::size_t loop = 0;
   for (const LoopClosure* c : loops_of(model)) {
     const auto own = static_cast<Eigen::Index>(c->equations().size());
-    if (row < own) break;
-    row -= own;
-    ++loop;
+    const double distance = gaps.segment(row, own).norm();
+    if (most.loop.empty() || !(distance <= most.distance)) most = {c->name(), distance};
+    row += own;
   }
-  return loop;
+  return most;
+}
+
+/// What keeps loops open: that there is no M to move by, or that nothing was found.
+Assembly not_closed(const Model& model, const EquationsOfMotion& equations, const State& start, const Farthest& open) {
+  if (const auto rate = unsolvable_rate(model, equations, start))
+    return {.fault = rate->why, .remedy = {}, .name = model.hinges()[rate->hinge].name, .of_hinge = true, .remark = {}};
+  return {.fault = "the loop cannot be closed from this start: its frames are " + brief(open.distance) +
+                   " m apart there (turns count with the length of the largest flexible body, or of what hinges and "
+                   "constraints join), and no way to close it was found with what is given and motions prescribe",
+          .remedy = "give fewer coordinates, or a nearer `guess`",
+          .name = open.loop,
+          .of_hinge = false,
+          .remark = {}};
 }
 
 }  // namespace
@@ -273,25 +292,22 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
   if (!closes(model, given, kept, &GivenState::positions, gap, assembler.length(),
               [&](const auto& free) { return assembler.close_positions(free); })) {
     if (assembler.turned_over()) {
-      result.loop = *assembler.turned_over();
+      result.name = loops_of(model)[*assembler.turned_over()]->name();
       result.fault =
-          "the loop closes the wrong way round from the initial state, its hinge turned over by half or a third of a "
-          "turn; give a nearer `guess`";
+          "the loop closes the wrong way round from this start, its hinge turned over by half or a third of a turn";
+      result.remedy = "give a nearer `guess`";
       return result;
     }
-    result.loop = farthest(model, assembler.gaps());
-    result.fault = "the loop cannot be closed from the initial state: its frames are " + brief(gap) +
-                   " m apart there (turns count with the length of the largest flexible body, or of what hinges and "
-                   "constraints join), and no way to close it was found with what `initial` gives and motions "
-                   "prescribe; give fewer coordinates, or a nearer `guess`";
-    return result;
+    return not_closed(model, equations, before, farthest(model, assembler.gaps()));
   }
   const double rate = assembler.gap_rate();
   if (!closes(model, given, kept, &GivenState::rates, rate, assembler.fastest(),
               [&](const auto& free) { return assembler.close_rates(free); })) {
-    result.loop = farthest(model, assembler.gap_rates());
-    result.fault = "the loop does not stay closed: the initial speeds part its frames at " + brief(rate) +
-                   " m/s, and what `initial` gives and motions prescribe leaves no way; give fewer rates";
+    const Farthest open = farthest(model, assembler.gap_rates());
+    result.name = open.loop;
+    result.fault = "the loop does not stay closed: the initial speeds part its frames at " + brief(open.distance) +
+                   " m/s, and what is given and motions prescribe leaves no way";
+    result.remedy = "give fewer rates";
     return result;
   }
   const std::string moved = greatest_change(model, before, state, false);
@@ -300,6 +316,10 @@ Assembly assemble(const Model& model, const EquationsOfMotion& equations, const 
   if (!sped.empty()) result.remark += (moved.empty() ? "speeds changed, most " : "; speeds too, most ") + sped;
   if (!result.remark.empty()) result.remark = "Loops were closed at the start: " + result.remark + ".";
   return result;
+}
+
+std::string fault_and_remedy(const Assembly& assembly) {
+  return assembly.fault + (assembly.remedy.empty() ? "" : "; " + assembly.remedy);
 }
 
 }  // namespace withy

@@ -16,9 +16,13 @@ struct GivenState {
 };
 
 struct Assembly {
-  std::string fault;     ///< why the loops cannot be closed, in a sentence; empty where they are
-  std::size_t loop = 0;  ///< of the fault: index of the loop that is farthest from closed
-  std::string remark;    ///< what was changed, in a sentence; empty where nothing was
+  std::string fault;   ///< why the loops cannot be closed, in a clause; empty where they are
+  std::string remedy;  ///< what of the state given may help, in a clause; may be empty
+  /// Of the fault: the constraint that is farthest from closed, or the hinge for a rate of which no equations have a
+  /// solution.
+  std::string name;
+  bool of_hinge = false;  ///< whose name it is
+  std::string remark;     ///< what was changed, in a sentence; empty where nothing was
 };
 
 /// Closes the loops of a state: positions by Newton's method, each step the smallest in the sense of M, then speeds by
@@ -31,5 +35,7 @@ struct Assembly {
 /// themselves; null: nothing
 Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state,
                   const GivenState* kept = nullptr);
+/// Its fault with what may help where that is a state of a scene.
+std::string fault_and_remedy(const Assembly& assembly);
 
 }  // namespace withy

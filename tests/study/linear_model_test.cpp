@@ -342,5 +342,15 @@ loads:
         << measured;
 }
 
+TEST(LinearModel, TellsHowWellTheDerivativesOfTheOutputsAskedForAreKnown) {
+  const Prepared prepared = scene_of(free_body + "  jumps: {type: expression, value: 'atan(1e18 * place.x)'}\n");
+  const auto to = [&](const std::vector<std::string>& outputs) {
+    const std::string text = linear_model(at_start(prepared), {{}, outputs}).output_derivatives;
+    return std::stod(text.substr(text.rfind(' ') + 1));
+  };
+  EXPECT_GT(to({"place", "jumps"}), 0.1);
+  EXPECT_LT(to({"place"}), 1e-10);
+}
+
 }  // namespace
 }  // namespace withy::study
