@@ -13,6 +13,7 @@
 #include "withy/results/linear_files.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/response_files.hpp"
+#include "withy/scene/state_as_given.hpp"
 #include "withy/study/equilibrium.hpp"
 #include "withy/study/formulation_modes.hpp"
 #include "withy/study/input_error.hpp"
@@ -24,9 +25,10 @@
 namespace withy::host {
 namespace {
 
-State state_at(const study::Prepared& prepared, const Given& at) {
+StateAsGiven state_at(const study::Prepared& prepared, const Given& at) {
   if (!at.any()) return prepared.scene.initial;
-  return at.text ? parse_state(*at.text, at.file, prepared.scene) : read_state(at.file, prepared.scene);
+  return at.text ? parse_state_as_given(*at.text, at.file, prepared.scene)
+                 : read_state_as_given(at.file, prepared.scene);
 }
 
 /// What `act` makes of the place; where it has no value there, what stops it.

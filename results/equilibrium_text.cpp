@@ -94,6 +94,7 @@ Json equilibrium_json(const study::Configuration& c, const study::Equilibrium& f
   Json j;
   j["scene"] = c.prepared().scene.file;
   j["formulation"] = c.prepared().scene.formulation_name;
+  if (!c.closing().empty()) j["closing"] = c.closing();
   j.update(steady_json(c.prepared().model(), found.steady, c.kept()));
   Json deflections = Json::object();
   for (const auto& [name, d] : found.deflections) deflections[name] = d;

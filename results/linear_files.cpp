@@ -49,6 +49,7 @@ Json linear_model_json(const study::Configuration& c, const study::LinearModel& 
   j["scene"] = c.prepared().scene.file;
   j["formulation"] = c.prepared().scene.formulation_name;
   j["state"] = Json::parse(write_state(c.prepared().model(), c.state()));
+  if (!c.closing().empty()) j["closing"] = c.closing();
   j["held"] = c.held_names();
   j["period"] = s.period;
   j["states"] = linear.states;

@@ -221,6 +221,7 @@ Json modes_json(const study::ModesOf& run) {
     }
     Json point;
     point["value"] = at.value;
+    if (!at.closing.empty()) point["closing"] = at.closing;
     point["jump"] = study::jump_text(at.jump);
     point["steady"] = at.steady ? found_json(at) : Json();
     point["turn"] = at.turn ? turn_json(*at.turn) : Json();

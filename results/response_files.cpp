@@ -102,6 +102,7 @@ Json response_json(const study::Configuration& c, const study::Response& r) {
   j["input_unit"] = r.model.inputs[0].unit;
   j["output"] = r.model.outputs[0].name;
   j["output_unit"] = r.model.outputs[0].unit;
+  if (!c.closing().empty()) j["closing"] = c.closing();
   j["opened"] = r.opened;
   j["period"] = s.period;
   j["equilibrium"] = r.model.equilibrium;

@@ -8,12 +8,14 @@
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/hosted_motion.hpp"
+#include "withy/scene/constraints.hpp"
 #include "withy/scene/events_done.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/held.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/orientation.hpp"
 #include "withy/scene/scene.hpp"
+#include "withy/scene/state_as_given.hpp"
 
 namespace withy {
 namespace {
@@ -253,12 +255,10 @@ class StateReader {
   bool good_ = true;
 };
 
-/// Which numbers of y are continuous states of loads that the `initial` of the scene names.
-std::vector<bool> named_by(const Scene& scene) {
-  const Model& model = *scene.model;
-  std::vector<bool> named(scene.initial.y.size());
-  const Value* initial = scene.source.find("initial");
-  const Value* loads = initial == nullptr ? nullptr : initial->find("loads");
+/// Which numbers of y are continuous states of loads that a state names. \param given null: nothing
+std::vector<bool> named_by(const Value* given, const Model& model) {
+  std::vector<bool> named(model.layout().size());
+  const Value* loads = given == nullptr ? nullptr : given->find("loads");
   if (loads == nullptr) return named;
   for (const LoadSlot& slot : model.layout().continuous_slots) {
     const LoadNode& load = model.loads()[slot.load];
@@ -300,11 +300,11 @@ void begin_loads_anew(const Value& given, const Model& model, const Checker& che
 }
 
 /// \param stay as begin_loads_anew
-State state_of(std::string_view text, const std::string& file, const Model& model, const State& start,
-               const std::vector<bool>& stay) {
+StateAsGiven state_of(std::string_view text, const std::string& file, const Model& model, const State& start,
+                      const std::vector<bool>& stay) {
   Diagnostics diagnostics;
   Document document;
-  State state = start;
+  StateAsGiven read(start);
   if (read_document(text, {}, document, diagnostics)) {
     Registry none;
     // A run.json says with which state its run ended.
@@ -312,10 +312,17 @@ State state_of(std::string_view text, const std::string& file, const Model& mode
     const Value* final = root.kind() == Value::Kind::map && root.has("status") ? root.find("final") : nullptr;
     const Value& given = final != nullptr ? *final : root;
     const Checker checker(document, none, diagnostics);
-    if (set_state(given, model, checker, state)) begin_loads_anew(given, model, checker, stay, state);
+    if (set_state(given, model, checker, read.state)) {
+      begin_loads_anew(given, model, checker, stay, read.state);
+      read.named = given_state(&given, model);
+      read.begun = named_by(&given, model);
+      const Layout& layout = model.layout();
+      const std::size_t first = layout.positions + layout.speeds;
+      for (std::size_t at = first; at < first + layout.continuous; ++at) read.begun[at] = !stay[at] && !read.begun[at];
+    }
   }
   if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
-  return state;
+  return read;
 }
 
 }  // namespace
@@ -337,17 +344,25 @@ bool set_state(const Value& value, const Model& model, const Checker& checker, S
 }
 
 State parse_state(std::string_view text, const std::string& file, const Model& model, const State& start) {
-  return state_of(text, file, model, start, set_in(start, model));
+  return state_of(text, file, model, start, set_in(start, model)).state;
+}
+
+StateAsGiven parse_state_as_given(std::string_view text, const std::string& file, const Scene& scene) {
+  return state_of(text, file, *scene.model, scene.initial, named_by(scene.source.find("initial"), *scene.model));
 }
 
 State parse_state(std::string_view text, const std::string& file, const Scene& scene) {
-  return state_of(text, file, *scene.model, scene.initial, named_by(scene));
+  return parse_state_as_given(text, file, scene).state;
 }
 
 State read_state(const std::string& file, const Model& model, const State& start) {
   return parse_state(read_bytes(file), file, model, start);
 }
 
-State read_state(const std::string& file, const Scene& scene) { return parse_state(read_bytes(file), file, scene); }
+StateAsGiven read_state_as_given(const std::string& file, const Scene& scene) {
+  return parse_state_as_given(read_bytes(file), file, scene);
+}
+
+State read_state(const std::string& file, const Scene& scene) { return read_state_as_given(file, scene).state; }
 
 }  // namespace withy

@@ -13,7 +13,9 @@
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/digital_part.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
+#include "withy/core/simulation/assembly.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/scene/state_as_given.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/check_loads.hpp"
 #include "withy/study/creep.hpp"
@@ -87,15 +89,17 @@ double tolerance_of(const Scene& scene) {
 
 }  // namespace
 
-Configuration::Configuration(const Prepared& prepared, State state, const Holding& holding)
+Configuration::Configuration(const Prepared& prepared, StateAsGiven start, const Holding& holding)
     : prepared_(prepared),
       dynamics_(prepared.scene.model, prepared.scene.formulation->terms()),
-      state_(std::move(state)),
+      state_(std::move(start.state)),
       held_(layout().speeds, false),
       follows_(held_) {
   const Model& model = prepared_.model();
   for (const LoadSlot& slot : layout().discrete_slots) require_no_switches(prepared.scene.file, model, slot);
   model.prescribe(state_);
+  rest_loops();
+  close_loops(start, holding);
   state_ = all_begun(model, *prepared_.equations, std::move(state_));
   check_load_derivatives(prepared_, state_);
   for (const MotionNode& motion : model.motions()) {
@@ -120,7 +124,35 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
   follows_ = dynamics_.follows();
   for (std::size_t s = 0; s < held_.size(); ++s) held_[s] = held_[s] || follows_[s];
   state_ = without_creep(dynamics_, std::move(state_), held_, tolerance_of(prepared_.scene));
-  rest_loops();
+  if (dynamics_.singular(state_.y))
+    throw InputError(
+        prepared_.scene.file +
+        ": the closed loops are in a singular configuration, about which there are no small motions: start from "
+        "another state. A straight beam between supports that cannot come nearer needs 'extension'");
+}
+
+void Configuration::close_loops(const StateAsGiven& start, const Holding& holding) {
+  const Model& model = prepared_.model();
+  if (loops_of(model).empty()) return;
+  // What carries a loop closes none.
+  std::vector<bool> stays = speeds_in_loops(model);
+  stays.flip();
+  for (const std::string& name : holding.locked)
+    for (const std::size_t s : speeds_of(model, name, "lock")) stays[s] = true;
+  const GivenState* named = start.named.positions.empty() ? nullptr : &start.named;
+  const std::vector<double> before = state_.y;
+  Assembly closed = assemble(model, *prepared_.equations, {stays, stays}, state_, named);
+  if (!closed.fault.empty())
+    throw InputError(fmt::format("{}: {} '{}': {}{}", prepared_.scene.file, closed.of_hinge ? "hinge" : "constraint",
+                                 closed.name, closed.fault,
+                                 closed.remedy.empty() ? "" : "; begin at a state that is nearer to closed"));
+  closing_ = std::move(closed.remark);
+  if (state_.y == before || start.begun.empty()) return;
+  // Loads that measure what has moved.
+  State anew = state_;
+  model.begin_continuous(anew);
+  for (std::size_t i = 0; i < start.begun.size(); ++i)
+    if (start.begun[i]) state_.y[i] = anew.y[i];
 }
 
 void Configuration::rest_loops() {
@@ -128,11 +160,6 @@ void Configuration::rest_loops() {
   constexpr double resting = 1e-6;
   const std::vector<bool> in_loops = speeds_in_loops(prepared_.model());
   Eigen::Map<Eigen::VectorXd> speeds(state_.y.data() + layout().positions, static_cast<Eigen::Index>(layout().speeds));
-  if (dynamics_.singular(state_.y))
-    throw InputError(
-        prepared_.scene.file +
-        ": the closed loops are in a singular configuration, about which there are no small motions: start from "
-        "another state. A straight beam between supports that cannot come nearer needs 'extension'");
   for (std::size_t s = 0; s < in_loops.size(); ++s) {
     if (!in_loops[s]) continue;
     double& rate = speeds[static_cast<Eigen::Index>(s)];

@@ -7,6 +7,7 @@
 
 #include "withy/core/analysis/steady_state.hpp"
 #include "withy/core/simulation/renewal.hpp"
+#include "withy/scene/state_as_given.hpp"
 #include "withy/study/prepared.hpp"
 
 namespace withy::study {
@@ -25,11 +26,12 @@ struct Holding {
 
 class Configuration {
  public:
-  /// Sampled loads that have not begun hold what they give at the state. Hinges that an integrator has left creeping
-  /// about rest are at rest (without_creep).
-  /// \throws InputError where a load switches, there is no such hinge, or the shape of a closed loop changes;
+  /// Loops that the state leaves open are closed as where a run begins: what is locked stays, and what the state names
+  /// stays where the rest can close them. Sampled loads that have not begun hold what they give at the state. Hinges
+  /// that an integrator has left creeping about rest are at rest (without_creep).
+  /// \throws InputError where a load switches, there is no such hinge, a loop cannot be closed, or its shape changes;
   /// SceneError where a load is wrong about its derivatives.
-  Configuration(const Prepared& prepared, State state, const Holding& holding);
+  Configuration(const Prepared& prepared, StateAsGiven start, const Holding& holding);
 
   [[nodiscard]] const Prepared& prepared() const { return prepared_; }
   [[nodiscard]] const Layout& layout() const { return prepared_.model().layout(); }
@@ -37,6 +39,8 @@ class Configuration {
   [[nodiscard]] const State& state() const { return state_; }
   /// What has no motion of its own: speeds that are held, and those that follow others as closed loops ask for.
   [[nodiscard]] const Held& held() const { return held_; }
+  /// What was changed to close loops, in a sentence; empty where nothing was.
+  [[nodiscard]] const std::string& closing() const { return closing_; }
   [[nodiscard]] bool follows(std::size_t speed) const { return follows_[speed]; }
   /// What is held, without what follows.
   [[nodiscard]] Held kept() const;
@@ -54,11 +58,13 @@ class Configuration {
  private:
   /// What integrators leave of a rest goes. \throws InputError where the shape of a loop changes
   void rest_loops();
+  void close_loops(const StateAsGiven& start, const Holding& holding);
 
   Prepared prepared_;
   TangentDynamics dynamics_;
   State state_;
   Held held_, follows_;
+  std::string closing_;
 };
 
 /// Where a state has what the sampled loads of a model hold, but for what outputs alone show of them.

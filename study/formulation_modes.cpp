@@ -13,7 +13,7 @@ namespace {
 void look_further(const Prepared& base, Registry& registry, const ModesQuestion& question, ModesFound& found) {
   const ModesAt& at = found.runs.front().points.front();
   if (!at.problem.empty() || !(question.masses || !question.damp.empty())) return;
-  Configuration c(base, question.start ? question.start(base) : base.scene.initial, question.holding);
+  Configuration c(base, question.start ? question.start(base) : StateAsGiven(base.scene.initial), question.holding);
   if (at.steady) c.set_state(at.steady->steady.state);
   if (question.masses) found.masses = effective_masses(c);
   if (question.damp.empty()) return;

@@ -127,7 +127,7 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
       SceneValues here = values;
       if (varies) here.set_text(sweep.path + '=' + sweep.text(value));
       const Prepared prepared = prepare(std::move(here), registry);
-      base.emplace(prepared, start ? start(prepared) : prepared.scene.initial, holding);
+      base.emplace(prepared, start ? start(prepared) : StateAsGiven(prepared.scene.initial), holding);
     }
     Configuration made = *base;
     if (spins) made.spin(read_spin(made.prepared().model(), sweep.spun(), sweep.text(value), "sweep"));
@@ -144,10 +144,12 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
     const double value = sweep.values[k];
     before.swap(c);
     c.emplace(configured(value));
-    if (last && last->y.size() == c->state().y.size()) c->begin_at(*last);
+    const bool goes_on = last && last->y.size() == c->state().y.size();
+    if (goes_on) c->begin_at(*last);
     run.points.push_back(modes_at(*c, as_is, wish));
     ModesAt& at = run.points.back();
     at.value = value;
+    if (!goes_on) at.closing = c->closing();
     if (at.steady && at.steady->steady.converged) {
       const State& steady = at.steady->steady.state;
       if (last && last->y.size() == steady.y.size() && run.points[k - 1].steady->steady.converged)

@@ -30,7 +30,7 @@ struct Sweep {
   [[nodiscard]] std::string shown_unit() const { return unit.empty() && !spun().empty() ? "rad/s" : unit; }
 };
 
-using StartState = std::function<State(const Prepared&)>;
+using StartState = std::function<StateAsGiven(const Prepared&)>;
 
 /// A steady state that was looked for.
 struct SteadyFound {
@@ -53,6 +53,7 @@ struct ModesAt {
   Eigen::VectorXd masses;             ///< M_ii, one a speed, zero for states; empty where there are no modes
   std::string problem;                ///< why there are none; empty where there are
   Jump jump = Jump::none;             ///< of a sweep, from the steady state at the value before
+  std::string closing;                ///< Configuration::closing, of the state that this one was looked for from
   std::string bent;                   ///< how far the steady state is bent and by what, where that is far; else empty
   std::optional<SteadyFound> steady;  ///< none where the state was taken as it is
   std::shared_ptr<const Model> model;

@@ -3,8 +3,10 @@
 namespace withy::app {
 
 study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments) {
-  return {engine.prepared(), engine.state(arguments.state),
-          study::read_holding(engine.model(), arguments.lock, arguments.spin)};
+  study::Configuration c(engine.prepared(), read_state(engine.prepared(), arguments.state),
+                         study::read_holding(engine.model(), arguments.lock, arguments.spin));
+  if (!c.closing().empty()) complain(c.closing());
+  return c;
 }
 
 void add_configuration(Options& o, ConfigurationArguments& a) {

@@ -75,11 +75,11 @@ Engine::Engine(const SceneArguments& arguments, std::size_t threads)
   if (!refusal.empty()) complain("--threads: one evaluates all: " + refusal);
 }
 
-State Engine::state(const std::string& file) const { return read_state(prepared_, file); }
+State Engine::state(const std::string& file) const { return read_state(prepared_, file).state; }
 
-State read_state(const study::Prepared& prepared, const std::string& file) {
+StateAsGiven read_state(const study::Prepared& prepared, const std::string& file) {
   if (file.empty()) return prepared.scene.initial;
-  return as_input([&] { return withy::read_state(file, prepared.scene); });
+  return as_input([&] { return read_state_as_given(file, prepared.scene); });
 }
 
 study::Control run_control(const std::string& label) {

@@ -8,6 +8,7 @@
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/plugins/host/plugin_host.hpp"
+#include "withy/scene/state_as_given.hpp"
 #include "withy/study/control.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/prepared.hpp"
@@ -59,7 +60,7 @@ void check_write(const std::string& file, const SceneArguments& arguments, const
 
 /// The state of a file for a scene, or the scene's initial state where the name is empty. \throws SceneError,
 /// InputError
-State read_state(const study::Prepared& prepared, const std::string& file);
+StateAsGiven read_state(const study::Prepared& prepared, const std::string& file);
 
 /// A simulation of the command line's: shows the time reached on standard error where that is a terminal, and ends at
 /// SIGINT.

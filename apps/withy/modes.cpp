@@ -73,6 +73,7 @@ ExitStatus modes(const ModesArguments& arguments) {
     write_changed(engine.prepared().values, all.damping->changes, arguments.write, engine.registry());
     if (!arguments.json) print("\nwritten to " + arguments.write + '\n');
   }
+  if (const std::string& closing = all.runs.front().points.front().closing; !closing.empty()) complain(closing);
   const std::vector<std::string> problems = study::modes_problems(all.runs, sweep);
   for (const std::string& problem : problems) complain(problem);
   if (all.interrupted) return ExitStatus::interrupted;

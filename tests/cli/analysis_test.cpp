@@ -211,6 +211,26 @@ hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}}
   EXPECT_EQ(j.at("derivatives"), "exact");
 }
 
+TEST(Linearize, SaysAsOtherAnalysesDoWhatClosedTheLoopsOfAState) {
+  const Folder folder;
+  folder.write("open.yaml", "hinges: {motor: {position: 1.2, rate: 0}}\n");
+  const std::string remark = "Loops were closed at the start: positions changed, most";
+  const std::string scene = "scenes/gallery/four-bar.yaml";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"linearize", scene},
+        {"response", scene, "--input", "motor", "--output", "pivot", "--json"},
+        {"equilibrium", scene, "--lock", "motor", "--json"},
+        {"modes", scene, "--as-is", "--json"}}) {
+    std::vector<std::string> at = command;
+    at.insert(at.end(), {"--at", "open.yaml", "--set", "initial.hinges.motor.rate=[0]"});
+    const Finished f = withy(folder, at);
+    EXPECT_EQ(f.status, 0) << f.err;
+    EXPECT_THAT(f.err, HasSubstr(remark)) << command[0];
+    EXPECT_THAT(f.out, HasSubstr("\"closing\": \"" + remark)) << command[0];
+  }
+  EXPECT_FALSE(result(folder, {"linearize", scene, "--set", "initial.hinges.motor.rate=[0]"}).contains("closing"));
+}
+
 TEST(Linearize, KeepsSensorsAndInputsForOtherPrograms) {
   const Folder folder;
   const json j = result(folder, {"linearize", "scenes/loads-of-the-slew.yaml", "--input", "shoulder", "--output",
