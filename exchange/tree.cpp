@@ -24,19 +24,39 @@ std::string scene_name(const std::string& name) {
   return name == "world" ? "_world" : made;
 }
 
+/// The name, or with a number at its end where it is taken already.
+std::string distinct(const std::string& name, const std::set<std::string>& taken) {
+  std::string made = name;
+  for (int number = 2; taken.contains(made); ++number) {
+    const std::string end = fmt::format("_{}", number);
+    made = name.substr(0, 64 - end.size()) + end;
+  }
+  return made;
+}
+
+/// Names that scenes may have stay; others become such, each another.
 template <class Part>
 void name_parts(std::vector<Part>& parts, const char* what, Tree& tree, Diagnostics& diagnostics) {
-  std::set<std::string> taken;
-  for (Part& part : parts) {
+  const auto made_of = [](const Part& part) {
     std::string made = scene_name(part.name);
     if constexpr (std::is_same_v<Part, Joint>)
       if (is_column_of_all(made)) made.insert(0, "_");
-    if (made != part.name)
-      tree.remarks.push_back(fmt::format("{} {} is called {} here", what, in_quotes(part.name), made));
-    part.name = made;
-    if (!taken.insert(made).second)
+    return made;
+  };
+  std::set<std::string> own, taken;
+  for (const Part& part : parts) {
+    if (!own.insert(part.name).second)
       diagnostics.error(part.place,
-                        fmt::format("a second {} of the name {}; need names of their own", what, in_quotes(made)));
+                        fmt::format("a second {} of the name {}; need names of their own", what, in_quotes(part.name)));
+    if (made_of(part) == part.name) taken.insert(part.name);
+  }
+  for (Part& part : parts) {
+    std::string made = made_of(part);
+    if (made == part.name) continue;
+    made = distinct(made, taken);
+    taken.insert(made);
+    tree.remarks.push_back(fmt::format("{} {} is called {} here", what, in_quotes(part.name), made));
+    part.name = std::move(made);
   }
 }
 

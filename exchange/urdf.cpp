@@ -291,7 +291,8 @@ Tree read_urdf(const Element& robot, bool free_base, bool mend_inertias, Diagnos
   if (!diagnostics.ok()) return tree;
   check_circles(tree, diagnostics);
   for (std::string& remark : unread_of_urdf(robot)) tree.remarks.push_back(std::move(remark));
-  if (diagnostics.ok() && is_world(tree, root, free_base)) take_world_out(tree, root);
+  if (!diagnostics.ok()) return tree;
+  if (is_world(tree, root, free_base)) take_world_out(tree, root);
   check_tree(tree, diagnostics);
   return tree;
 }

@@ -31,7 +31,8 @@ Json import_json(const Imported& imported, const std::string& file) {
   for (Eigen::Index k = 0; k < body.omega.size(); ++k) {
     Json shares = Json::array();
     for (Eigen::Index d = 0; d < 6; ++d) shares.push_back(s.effective_mass(k, d));
-    j["modes"].push_back({{"frequency", body.frequency(k)}, {"effective_mass", shares}});
+    j["modes"].push_back(
+        {{"frequency", body.frequency(k)}, {"frequency_error", body.frequency_errors[k]}, {"effective_mass", shares}});
   }
   j["effective_mass"] = s.held;
   j["fixed_interface_frequencies"] = body.fixed_frequencies;
@@ -94,8 +95,11 @@ std::string import_text(const Json& j) {
   out +=
       fmt::format("inertia about it                  {} kg m^2 (xx yy zz xy xz yz)\n", numbers(m["inertia"], "{:.6g}"));
   out += fmt::format("these differ from the mesh's by   {:.1g}\n", m["difference_from_mesh"].get<double>());
-  out += fmt::format("rigid motions meet                {:.1g} of the greatest stiffness\n\n",
+  out += fmt::format("rigid motions meet                {:.1g} of the greatest stiffness\n",
                      m["stiffness_of_rigid_motions"].get<double>());
+  double error = 0;
+  for (const Json& mode : j["modes"]) error = std::max(error, mode["frequency_error"].get<double>());
+  out += fmt::format("its rounding moves frequencies by {:.1g} of themselves\n\n", error);
   out += "mode   frequency [Hz]   effective mass and inertia, % (x y z, about x y z)\n";
   std::size_t number = 0;
   for (const Json& mode : j["modes"]) {

@@ -38,7 +38,8 @@ Interior::Interior(const SparseMatrix& K, const SparseMatrix& M, std::vector<Eig
   if (factor_.info() != Eigen::Success || !(factor_.vectorD().minCoeff() > 0))
     throw InputError(
         "the clamped mesh is not stiff: some of it hangs on neither the root nor an interface, or its "
-        "elements have motions without stiffness, as a single row of reduced ones");
+        "elements have motions without stiffness, as a single row of reduced ones, or its numbers have too few "
+        "digits for so slender a mesh");
 }
 
 SparseMatrix Interior::part_of(const SparseMatrix& matrix) const {

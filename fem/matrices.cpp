@@ -54,13 +54,19 @@ double value_of(std::string_view text, const std::filesystem::path& file, int li
   return *value;
 }
 
-constexpr std::string_view market = "%%MatrixMarket";
+std::string in_small_letters(std::string_view text) {
+  std::string small(text);
+  std::transform(small.begin(), small.end(), small.begin(), [](unsigned char c) { return std::tolower(c); });
+  return small;
+}
+
+/// In letters of any size, as other readers take it.
+bool is_heading(std::string_view line) { return in_small_letters(line).starts_with("%%matrixmarket"); }
 
 /// Refuses a file of Matrix Market that has no real matrix by rows and columns. What it says of symmetry is seen from
 /// the elements.
 void check_heading(std::string_view line, const std::filesystem::path& file, int number) {
-  std::string heading(line);
-  std::transform(heading.begin(), heading.end(), heading.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string heading = in_small_letters(line);
   const auto fields = words(heading);
   const auto is = [&](std::size_t i, std::initializer_list<std::string_view> known) {
     return i < fields.size() && std::find(known.begin(), known.end(), fields[i]) != known.end();
@@ -83,17 +89,25 @@ std::size_t announced_elements(std::string_view line, Eigen::Index size, const s
   return *entries;
 }
 
-/// Lines "row column value", rows from 1, of a matrix of `size` rows; below the heading of Matrix Market where there is
-/// one.
+/// Whether a first line without heading is "rows columns elements": its row and column are the last ones, its value is
+/// a count, and the elements have that place too.
+bool has_sizes_alone(std::string_view first, const std::vector<Triplet>& triplets, Eigen::Index size) {
+  const auto is_last = [&](const Triplet& t) { return t.row() == size - 1 && t.col() == size - 1; };
+  return number_of<std::size_t>(words(first).back()).has_value() && is_last(triplets.front()) &&
+         std::any_of(triplets.begin() + 1, triplets.end(), is_last);
+}
+
+/// Lines "row column value", rows from 1, of a matrix of `size` rows; below the heading of Matrix Market, its line of
+/// sizes, or both, where they are there.
 std::vector<Triplet> read_triplets(std::string_view text, Eigen::Index size, const std::filesystem::path& file) {
   std::vector<Triplet> triplets;
   std::optional<std::size_t> announced;
   bool sizes_follow = false;
   Lines lines(text);
-  std::string_view line;
+  std::string_view line, first;
   while (lines.next(line)) {
     line = trimmed(line);
-    if (lines.number() == 1 && line.starts_with(market)) {
+    if (triplets.empty() && !announced && is_heading(line)) {
       check_heading(line, file, lines.number());
       sizes_follow = true;
     }
@@ -108,7 +122,12 @@ std::vector<Triplet> read_triplets(std::string_view text, Eigen::Index size, con
     if (!row || !column || *row < 1 || *column < 1) fault(file, lines.number(), "need a row, a column and a value");
     if (*row > size || *column > size)
       fault(file, lines.number(), fmt::format("got row {}, column {}; there are {} rows", *row, *column, size));
+    if (triplets.empty()) first = line;
     triplets.emplace_back(*row - 1, *column - 1, value_of(fields[2], file, lines.number()));
+  }
+  if (!announced && !triplets.empty() && has_sizes_alone(first, triplets, size)) {
+    announced = number_of<std::size_t>(words(first).back());
+    triplets.erase(triplets.begin());
   }
   if (announced && *announced != triplets.size())
     throw InputError(

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "interior.hpp"
+#include "rounding.hpp"
 #include "sections.hpp"
 
 namespace withy::fem {
@@ -17,6 +18,8 @@ namespace {
 using Triplet = Eigen::Triplet<double>;
 
 constexpr double two_pi = 2 * std::numbers::pi;
+/// Greatest relative error of a frequency by rounding of the stiffness.
+constexpr double tolerated_error = 0.01;
 
 /// The scalar mass matrix of M = m ⊗ 1₃, as elements without rotations have.
 SparseMatrix node_mass_of(const SparseMatrix& M) {
@@ -189,8 +192,12 @@ class Reducer {
     };
     const Eigen::MatrixXd K = reduced(m_.K), M = reduced(m_.M);
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K, M);
-    if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] > 0))
-      throw InputError("the reduced body has no positive definite mass and stiffness");
+    if (eigen.info() != Eigen::Success) throw InputError("the reduced body has no positive definite mass");
+    if (!(eigen.eigenvalues()[0] > 0))
+      throw InputError(fmt::format(
+          "the reduced body has no positive definite stiffness: need the stiffness with more digits than its about {}, "
+          "or a beam where the part is so slender",
+          digits_of(rounding_unit(m_.K))));
     const Eigen::VectorXd omega = eigen.eigenvalues().cwiseSqrt();
     Eigen::Index kept = omega.size();
     while (options_.highest > 0 && kept > 0 && omega[kept - 1] > two_pi * options_.highest) --kept;
@@ -208,7 +215,24 @@ class Reducer {
       turn.col(k) *= -1;
     }
     body_.omega = omega.head(kept);
+    check_rounding();
     turn_ = turn.topRows(rigid_.cols());
+  }
+
+  /// A frequency is told only where it is known.
+  void check_rounding() {
+    const Rounding rounding = rounding_of(m_, body_.modes, body_.omega);
+    body_.frequency_errors = rounding.frequency_error;
+    for (Eigen::Index k = 0; k < body_.omega.size(); ++k) {
+      const double error = rounding.frequency_error[k];
+      if (error < tolerated_error) continue;
+      throw InputError(fmt::format(
+          "the frequency of mode {}, {:.4g} Hz, is {}: rigid motions of the mesh's parts, which a free mesh does not "
+          "resist, or motions that its elements do not resist, have stiffness, as of numbers with about {} digits; "
+          "need the stiffness with more digits and without supports, or a beam where the part is so slender",
+          k + 1, body_.frequency(k), error < 1 ? fmt::format("known to {:.2g} % alone", 100 * error) : "not known",
+          digits_of(rounding.unit)));
+    }
   }
 
   void add_nodes() {

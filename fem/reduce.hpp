@@ -36,6 +36,7 @@ struct Reduction {
   std::vector<Eigen::Index> free;           ///< rows of K and M that are not clamped
   Eigen::MatrixXd modes;                    ///< 3N×n [m]
   Eigen::VectorXd omega;                    ///< [rad/s]
+  Eigen::VectorXd frequency_errors;         ///< of each mode by rounding of the stiffness, relative: below 0.01
   std::vector<sid::Node> nodes;             ///< root, interfaces, stations: order zero
   SparseMatrix node_mass;                   ///< N×N: M is this for each axis
   std::vector<double> fixed_frequencies;    ///< of the fixed-interface modes [Hz]
@@ -55,8 +56,8 @@ struct Reduction {
 
 constexpr Eigen::Index inertial_loads = 12;
 
-/// All but the second order. \throws InputError where the mesh is not free, not in one piece with its root, or has no
-/// such modes.
+/// All but the second order. \throws InputError where the mesh is not free, not in one piece with its root, has no such
+/// modes, or its stiffness has too few digits for their frequencies.
 Reduction reduce(const Matrices& matrices, const ReductionOptions& options);
 
 /// Adds the second order: Γ_kl is what leaves strains linear in the modal coordinates, so that with Green's strain

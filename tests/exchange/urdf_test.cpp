@@ -172,6 +172,38 @@ TEST(Urdf, AJointWithTheNameOfAColumnOfAllResultsGetsAnother) {
   EXPECT_EQ(f.states().at(0).name, "_work");
 }
 
+/// Names of scenes have other letters, and 64 at most.
+TEST(Urdf, NamesThatBecomeAlikeGetNumbers) {
+  const std::string stem(70, 'x');
+  std::string text = "<robot name='r'><link name='base'/>";
+  for (const std::string& name :
+       {std::string("b\u00e9"), std::string("b\u00e8"), std::string("b___2"), stem + "1", stem + "2"})
+    text += "<link name='" + name +
+            "'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link><joint name='" + name +
+            "' type='continuous'><parent link='base'/><child link='" + name + "'/></joint>";
+  const Scratch file(".urdf", text + "</robot>");
+  const ImportedScene made = imported({file.file(), {}, false, 0, 0});
+  EXPECT_THAT(made.remarks,
+              testing::IsSupersetOf({"link \"b\u00e9\" is called b__ here", "link \"b\u00e8\" is called b___3 here",
+                                     "joint \"b\u00e8\" is called b___3 here"}));
+  EXPECT_THAT(made.remarks, testing::Contains(testing::EndsWith("is called " + std::string(62, 'x') + "_2 here")));
+  EXPECT_EQ(host::Equations(host::Scene::parse(plugins(), made.text)).size(), 10U);
+}
+
+/// The circle has no root, but another link is one.
+TEST(Urdf, JointsInACircleBesideTheRootAreRefused) {
+  const auto joint = [](const std::string& parent, const std::string& child) {
+    return "<joint name='" + parent + child + "' type='continuous'><parent link='" + parent + "'/><child link='" +
+           child + "'/></joint>";
+  };
+  const std::string links = "<robot name='r'><link name='root'/><link name='a'/><link name='b'/>";
+  for (const std::string& joints : {joint("a", "a") + joint("root", "b"), joint("a", "b") + joint("b", "a")}) {
+    const Scratch file(".urdf", links + joints + "</robot>");
+    EXPECT_THAT(problems_of({file.file(), {}, false, 0, 0}),
+                testing::HasSubstr("the joints above this one make a circle; need a tree"));
+  }
+}
+
 TEST(Urdf, WhatItCannotSayIsSaidWithTheName) {
   const auto written = [](const std::string& hinge) {
     return write_urdf(

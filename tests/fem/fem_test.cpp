@@ -196,8 +196,12 @@ TEST(Files, of_matrix_market_have_a_heading_and_sizes) {
   const std::string rows = std::to_string(K.rows());
   const auto sizes = [&](Eigen::Index elements) { return rows + " " + rows + " " + std::to_string(elements) + "\n\n"; };
   const std::string heading = "%%MatrixMarket matrix coordinate real ", remark = "% made by a test, of a brick\n";
-  for (const std::string& text : {heading + "general\n" + remark + sizes(count) + both.str(),
-                                  heading + "symmetric\r\n" + sizes(below) + lower.str(), remark + both.str()}) {
+  // Other programs write the heading in other letters, or have lost it: the sizes tell themselves by their place.
+  for (const std::string& text :
+       {heading + "general\n" + remark + sizes(count) + both.str(),
+        heading + "symmetric\r\n" + sizes(below) + lower.str(), remark + both.str(),
+        "\n%%matrixmarket MATRIX Coordinate Real general\n" + remark + sizes(count) + both.str(),
+        remark + " " + heading + "general\n" + sizes(count) + both.str(), remark + sizes(below) + lower.str()}) {
     const NamedMatrix read = read_abaqus(folder.with("K.mtx", text), c.mesh);
     EXPECT_EQ((arranged(read, c.matrices.nodes) - K).norm(), 0);
   }
@@ -207,6 +211,7 @@ TEST(Files, of_matrix_market_have_a_heading_and_sizes) {
   EXPECT_THAT(refused(heading + "general\n" + sizes(count + 1) + both.str()),
               HasSubstr("K.mtx: got " + std::to_string(count) + " elements; its line of sizes says " +
                         std::to_string(count + 1)));
+  EXPECT_THAT(refused(sizes(count + 1) + both.str()), HasSubstr("its line of sizes says"));
   EXPECT_THAT(refused(heading + "general\n3 3 1\n1 1 2.5\n"),
               HasSubstr("K.mtx:2: got a matrix of 3 by 3; need " + rows + " by " + rows));
   for (const char* other : {"%%MatrixMarket matrix array real general\n",
