@@ -47,7 +47,8 @@ class StepJacobian {
   }
 
   /// Finds it at (t, y) where ẏ is `slope` and h is the step at hand; `evaluate(t, y, slope)` as OneStep's.
-  /// \param least  no difference is taken over less: near rest a part of what is there is nothing but rounding
+  /// \param least  no difference is taken over less, where a number of size one has one over more: near rest a part of
+  ///               what is there is nothing but rounding
   template <class Values, class Evaluate>
   Evaluation update(double t, double h, const Values& y, const Eigen::ArrayXd& slope, Evaluate&& evaluate,
                     double least = 0) {
@@ -62,7 +63,7 @@ class StepJacobian {
       const double here = moved_[j];
       double scale = std::max(std::abs(here), std::abs(h * slope[j]));
       if (!(scale > 0)) scale = 1;
-      moved_[j] = here + std::max(root * scale, least);
+      moved_[j] = here + std::max(root * scale, std::min(least, root));
       const Evaluation e = evaluate(t, moved_, slope_);
       if (!e.ok()) return e;
       const Eigen::Index first = second_order_ ? positions_ : 0;

@@ -42,11 +42,12 @@ std::unique_ptr<Body> rod_like_beam() {
                             {"torsion", strain(30, 2, 0.002)}});
 }
 
-/// In functions that turn the root about all three axes, and move it.
-std::unique_ptr<Body> beam_with_a_turning_root() {
+/// In functions that turn the root about all three axes, and move it: so many in the first plane, and in the other and
+/// of twist.
+std::unique_ptr<Body> beam_with_a_turning_root(double first = 3, double others = 2) {
   Registry registry;
   enroll_static_plugins(registry);
-  Value pinned = strain(40, 3), free = strain(25, 2), twisting = strain(30, 2, 0.002);
+  Value pinned = strain(40, first), free = strain(25, others), twisting = strain(30, others, 0.002);
   pinned.set("family", Value(std::string("pinned-pinned")));
   for (Value* of : {&free, &twisting}) of->set("family", Value(std::string("free-free")));
   return make_plugin<Body>(registry, "beam",
@@ -119,7 +120,8 @@ class ExactKinematics final : public PointKinematics {
 };
 
 TEST(Rod, partial_velocities_and_biases_are_derivatives) {
-  for (const auto& body : {rod_like_beam(), stretching_beam(), beam_with_a_turning_root()}) {
+  // As few functions as have waves no shorter than the clamped ones': of the same strains a clamped rod is as far off.
+  for (const auto& body : {rod_like_beam(), stretching_beam(), beam_with_a_turning_root(2, 1)}) {
     ASSERT_NE(body->rod(), nullptr);
     expect_kinematics_conforms(ExactKinematics(*body->rod()));
   }
@@ -165,7 +167,7 @@ void expect_second_order_of_the_beam(const Body& beam) {
     };
     const PointMotionOf<double> rest = motion(0, 0);
     EXPECT_LT((rest.P - e.phi).norm(), 1e-13);
-    EXPECT_LT((rest.W - e.psi).norm(), 1e-13 * e.psi.norm());
+    EXPECT_LE((rest.W - e.psi).norm(), 1e-13 * e.psi.norm());
     double gamma_size = 0, theta_size = 0, gamma_error = 0, theta_error = 0;
     for (Eigen::Index j = 0; j < n; ++j) {
       const auto derivative = [&](auto field) {
@@ -185,8 +187,8 @@ void expect_second_order_of_the_beam(const Body& beam) {
         theta_error = std::max(theta_error, (W.col(i) - w).norm());
       }
     }
-    EXPECT_LT(gamma_error, 1e-7 * gamma_size) << "x = " << x;
-    EXPECT_LT(theta_error, 1e-7 * theta_size) << "x = " << x;
+    EXPECT_LE(gamma_error, 1e-7 * gamma_size) << "x = " << x;
+    EXPECT_LE(theta_error, 1e-7 * theta_size) << "x = " << x;
   }
 }
 
