@@ -151,7 +151,8 @@ TEST(OpenLoops, ASampledLoadIsNotAskedWhereNoLoopCloses) {
 }
 
 TEST(OpenLoops, FrequenciesOfBodiesWithoutExactKinematicsAreReferredToQuadratic) {
-  const Prepared prepared = sprung_linkage({}, test::beam_coupler);
+  const Prepared prepared =
+      sprung_linkage({}, "{type: plate, length: 1.0, width: 0.2, mass_per_area: 2.7, stiffness: 50, modes: 2}");
   FrequencyQuestion question;
   Point point;
   point.formulation = "symmetric";
