@@ -1,9 +1,12 @@
 #include "withy/campaign/si_levels.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <string>
 
 #include "withy/campaign/derived.hpp"
+#include "withy/campaign/trials.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/scene/units.hpp"
 
@@ -16,10 +19,16 @@ std::optional<AnyQuantity> quantity_of(const Value& value) {
   return read.value ? std::optional(read) : std::nullopt;
 }
 
-/// The first level that is a quantity; null where there is none.
-const Value* first_quantity(const Levels& levels) {
-  const auto at = std::find_if(levels.values.begin(), levels.values.end(), quantity_of);
-  return at == levels.values.end() ? nullptr : &*at;
+/// The scene with a level of an axis, and those of the same row where these are columns of a list: rows are cases, and
+/// what stands in two of them may not go together. Of other axes the first, or the middle of what is drawn.
+SceneValues with_level(const Plan& plan, SceneValues values, const Axis& axis, std::size_t level) {
+  for (const Axis& other : plan.axes) {
+    const bool beside = !other.drawn() && other.grid == axis.grid;
+    set_or_take(values, other.path,
+                other.drawn() ? Value(other.distribution.quantile(0.5)) : other.levels.at(beside ? level : 0),
+                plan.file);
+  }
+  return values;
 }
 
 /// Whether the scene can be made with a number at a path: one where names are meant cannot.
@@ -29,6 +38,17 @@ bool takes(SceneValues values, const std::string& path, double number, Registry&
   return true;
 } catch (const SceneError&) {
   return false;
+}
+
+/// Whether a scene with a quantity at a path has a number there; nothing where there is no such scene: its cases say
+/// what is wrong with them.
+std::optional<bool> is_number(const SceneValues& values, const std::string& path, double number,
+                              Registry& registry) try {
+  // Numbers whose unit is known with a hinge, as those it starts with, stand in the checked scene as they were written.
+  const std::optional<double> checked = number_at(make_scene(values, registry).source, path);
+  return checked == number || (!checked && takes(values, path, number, registry));
+} catch (const SceneError&) {
+  return {};
 }
 
 /// Those of this kind as numbers.
@@ -43,32 +63,20 @@ void convert(Levels& levels, const Dimension& dimension) {
 
 }  // namespace
 
-void use_si(Plan& plan, const SceneValues& base, Registry& registry) try {
-  SceneValues values = base;
-  bool any = false;
-  for (const Axis& axis : plan.axes) {
-    const Value* quantity = first_quantity(axis.levels);
-    any = any || quantity != nullptr;
-    values.set(axis.path,
-               axis.drawn()          ? Value(axis.distribution.quantile(0.5))
-               : quantity != nullptr ? *quantity
-                                     : axis.levels.at(0),
-               plan.file);
-  }
-  if (!any) return;
-  const Scene scene = make_scene(values, registry);
+void use_si(Plan& plan, const SceneValues& base, Registry& registry) {
+  constexpr int wrong_rows = 16;  // each costs a scene, and a list may have a million
   for (Axis& axis : plan.axes) {
-    const Value* first = first_quantity(axis.levels);
-    if (first == nullptr) continue;
-    const AnyQuantity read = *quantity_of(*first);
-    // Numbers whose unit is known with a hinge, as those it starts with, stand in the checked scene as they were
-    // written.
-    const std::optional<double> number = number_at(scene.source, axis.path);
-    if (number == read.value || (!number && takes(values, axis.path, *read.value, registry)))
-      convert(axis.levels, read.dimension);
+    int tried = 0;
+    for (std::size_t k = 0; k < axis.levels.size() && tried < wrong_rows; ++k) {
+      const std::optional<AnyQuantity> read = quantity_of(axis.levels.at(k));
+      if (!read) continue;
+      ++tried;
+      const std::optional<bool> number = is_number(with_level(plan, base, axis, k), axis.path, *read->value, registry);
+      if (!number) continue;
+      if (*number) convert(axis.levels, read->dimension);
+      break;
+    }
   }
-} catch (const SceneError&) {
-  // Cases say what is wrong with them; here the values stay as the plan has them.
 }
 
 }  // namespace withy::campaign

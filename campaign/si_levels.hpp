@@ -7,8 +7,8 @@
 namespace withy::campaign {
 
 /// Turns levels that are quantities, as "2000 g", into numbers in SI units where the scene takes numbers. Names that
-/// look like quantities stay names, and what has another unit than the first quantity stays as it is: the scene is to
-/// refuse it in its own words.
+/// look like quantities stay names, and what has another unit than the first quantity that makes a scene, with the rest
+/// of its row, stays as it is: the scene is to refuse it in its own words.
 /// \param base the scene without what varies
 void use_si(Plan& plan, const SceneValues& base, Registry& registry);
 

@@ -117,6 +117,30 @@ derived: {bodies.rod.center_of_mass.1: "-0.25 * bodies.rod.mass"}
   EXPECT_EQ(mixed.axes[0].levels.at(1).text(), "5 s");
 }
 
+/// The first quantities of two columns stand in different rows, and no case has both: an effort that would end before
+/// it begins. Nor does a wrong row before others, which its case tells, leave these in other units.
+TEST(Plans, HaveLevelsInSiUnitsWhereTheFirstOfAllColumnsMakeNoScene) {
+  const PlanFolder folder;
+  folder.write("scene.yaml", R"(format: withy/1
+time: {end: 1}
+bodies: {rod: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {pin: {type: revolute, axis: [0, 0, 1], parent: world, child: rod}}
+loads: {push: {type: hinge-effort, hinge: pin, law: constant, value: 1, start: 0.1, stop: 0.9}}
+)");
+  folder.write("plan.yaml", R"(format: withy-sweep/1
+scene: scene.yaml
+vary: {loads.push.start: {list: list.csv}, loads.push.stop: {list: list.csv}}
+derived: {bodies.rod.mass: "1 + loads.push.start"}
+)");
+  const std::string head = "loads.push.start,loads.push.stop\n0.1,200 ms\n";
+  const auto starts = [&](const std::string& rows) {
+    folder.write("list.csv", head + rows);
+    return read_plan((folder / "plan.yaml").string(), test::plugins()).axes[0].levels.numbers;
+  };
+  EXPECT_THAT(starts("500 ms,0.9\n"), ElementsAre(0.1, 0.5));
+  EXPECT_THAT(starts("500 ms,0.4\n200 ms,0.4\n"), ElementsAre(0.1, 0.5, 0.2));
+}
+
 TEST(Plans, KeepColumnsOfHingesVectorsAndSingleResults) {
   const PlanFolder folder;
   const Plan plan = folder.plan(
