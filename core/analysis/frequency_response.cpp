@@ -61,8 +61,10 @@ const Item* best(const std::vector<Item>& items, Counts&& counts, Better&& bette
   return found;
 }
 
-/// What an error of a root is to its exponent.
+/// What an error of a root is to its exponent; none where it is infinite: of what is not known nothing else is the
+/// same.
 double error_of_exponent(const LinearSystem& system, Complex value, double error) {
+  if (!std::isfinite(error)) return 0;
   return system.sampled() ? error / (std::abs(value) * system.period) : error;
 }
 
@@ -76,7 +78,8 @@ KnownRoots without(const LinearSystem& system, const KnownRoots& roots, const Kn
   // Multipliers of motions that are over after a sample, or after some, are rounding of zero, and its root where these
   // follow each other: their logarithms differ.
   const auto over = [&](const KnownRoots& of, Eigen::Index i) {
-    return system.sampled() && std::abs(of.values[i]) < std::max(1e-9, 10 * of.errors[i]);
+    return system.sampled() &&
+           std::abs(of.values[i]) < std::max(1e-9, std::isfinite(of.errors[i]) ? 10 * of.errors[i] : 0);
   };
   for (Eigen::Index k = 0; k < others.values.size(); ++k) {
     const Complex other = others.values[k], s = exponent_of(system, other);

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <complex>
+#include <random>
 
 #include "withy/core/analysis/frequency_response.hpp"
 
@@ -99,6 +100,80 @@ TEST(Roots, ErrorsOfZerosThatAreOneTellWhatRoundingMakesOfThem) {
   const KnownRoots found = zeros({A, B, C, Eigen::MatrixXd::Ones(1, 1), 0}).zeros;
   ASSERT_EQ(found.values.size(), 3);
   for (int i = 0; i < 3; ++i) EXPECT_GE(found.errors[i], std::abs(found.values[i] + 1.0)) << i;
+}
+
+/// Unit masses in a row, springs before each, dampers of `damping` times these; a force on the last and the sensor of
+/// `seen`, a place or, beyond these, a rate.
+LinearSystem row_of_masses(double damping, Eigen::Index count, Eigen::Index seen) {
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(count, count), A = Eigen::MatrixXd::Zero(2 * count, 2 * count);
+  const Eigen::Vector4d springs(0.7, 3.1, 1.9, 5.3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    K(i, i) += springs[i];
+    if (i > 0) K.block(i - 1, i - 1, 2, 2) += springs[i] * Eigen::Matrix2d{{1, -1}, {-1, 0}};
+  }
+  A.topRightCorner(count, count).setIdentity();
+  A.bottomRows(count) << -K, -damping * K;
+  return {A, Eigen::VectorXd::Unit(2 * count, 2 * count - 1), Eigen::RowVectorXd::Unit(2 * count, seen),
+          Eigen::MatrixXd::Zero(1, 1), 0};
+}
+
+// The rate of the first mass rests where the last is pushed at rest, and nothing else stops it: one zero, at zero. It
+// was rounding, and told to be known 1e13 times better.
+TEST(Roots, TheZeroOfARateStandsAtZero) {
+  const KnownRoots found = zeros(row_of_masses(0, 4, 4)).zeros;
+  ASSERT_EQ(found.values.size(), 1);
+  EXPECT_EQ(found.values[0], 0.0);
+}
+
+// Each spring with its damper passes nothing at −1/0.001: two zeros, which rounding parts.
+TEST(Roots, ErrorsOfTwoZerosThatAreOneAreNoLessThanWhatPartsThem) {
+  const KnownRoots found = zeros(row_of_masses(1e-3, 3, 0)).zeros;
+  ASSERT_EQ(found.values.size(), 2);
+  for (int i = 0; i < 2; ++i) EXPECT_GE(found.errors[i], std::abs(found.values[i] + 1000.0)) << i;
+  EXPECT_EQ(seen_roots(row_of_masses(1e-3, 3, 0), known_poles(row_of_masses(1e-3, 3, 0)), {found}).hidden.size(), 0);
+}
+
+// Where the last is held by the force: the frequencies of the others. Known to some digits more than was told.
+TEST(Roots, ErrorsOfZerosAreOfTheSizeOfRounding) {
+  const LinearSystem system = row_of_masses(0, 4, 3);
+  const KnownRoots found = zeros(system).zeros;
+  ASSERT_EQ(found.values.size(), 6);
+  const Eigen::Matrix3d held = -system.A.block<3, 3>(4, 0);
+  const Eigen::Vector3d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(held).eigenvalues();
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::Array3d apart = (squares.array().sqrt() - std::abs(found.values[i].imag())).abs();
+    EXPECT_GE(found.errors[i], std::hypot(apart.minCoeff(), found.values[i].real())) << i;
+    EXPECT_LT(found.errors[i], 1e-12 * std::abs(found.values[i])) << i;
+  }
+}
+
+/// Undamped, with a force on one coordinate and the place of another: inertias of any condition, stiffnesses of four
+/// powers of ten.
+LinearSystem undamped_of_any_inertias(std::mt19937& any) {
+  const auto one = [&] { return static_cast<double>(any()) / 4294967296.0 - 0.5; };
+  const auto matrix = [&](Eigen::Index n) { return Eigen::MatrixXd::NullaryExpr(n, n, one).eval(); };
+  const Eigen::Index n = 3 + static_cast<Eigen::Index>(any() % 6);
+  const Eigen::MatrixXd R = matrix(n), Q = matrix(n).householderQr().householderQ();
+  const Eigen::VectorXd stiffnesses = Eigen::VectorXd::NullaryExpr(n, [&] { return std::pow(10, 3 + 4 * one()); });
+  const Eigen::LDLT<Eigen::MatrixXd> inertias(R * R.transpose());
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n), B = Eigen::MatrixXd::Zero(2 * n, 1);
+  A.topRightCorner(n, n).setIdentity();
+  A.bottomLeftCorner(n, n) = -inertias.solve(Q * stiffnesses.asDiagonal() * Q.transpose());
+  B.bottomRows(n) = inertias.solve(Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(any() % n)));
+  return {A, B, Eigen::RowVectorXd::Unit(2 * n, static_cast<Eigen::Index>(any() % n)), Eigen::MatrixXd::Zero(1, 1), 0};
+}
+
+// Of one in a hundred of these QZ comes to no end.
+TEST(Roots, AreFoundWhereQzComesToNoEnd) {
+  std::mt19937 any(7);
+  for (int k = 0; k < 1000; ++k) {
+    const LinearSystem system = undamped_of_any_inertias(any);
+    const Eigen::Index n = system.A.rows();
+    KnownRoots found;
+    ASSERT_NO_THROW(found = zeros(system).zeros) << k;
+    for (Eigen::Index i = 0; i < found.values.size(); ++i)
+      ASSERT_LT(found.errors[i], 1e-3 * (std::abs(found.values[i]) + system.A.norm() / n)) << k;
+  }
 }
 
 }  // namespace
