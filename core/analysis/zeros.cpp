@@ -123,8 +123,11 @@ Eigen::Index drop_zeros_at_zero(LinearSystem& s, double of_A) {
     const Eigen::MatrixXd gone = unheld_but_for(all, of_elements).topRows(n);
     if (gone.cols() == 0) break;
     Eigen::Index row = 0, column = 0;
-    // An input that moves nothing by itself is no zero, but the end of the matter.
-    if (!(gone.cwiseAbs().maxCoeff(&row, &column) > 0)) break;
+    // An input that moves nothing, but for rounding, is no zero: the output does not feel it.
+    if (!(gone.cwiseAbs().maxCoeff(&row, &column) > 0)) {
+      s.B.setZero();
+      break;
+    }
     drop_resting(s, gone.col(column), of_elements);
   }
   return count;

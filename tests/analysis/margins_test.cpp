@@ -147,6 +147,18 @@ TEST(Roots, ErrorsOfZerosAreOfTheSizeOfRounding) {
   }
 }
 
+// The output sees the first state, and the input moves the others: no rounding makes a gain of that.
+TEST(Roots, OfAnOutputThatTheInputDoesNotReachThereAreNone) {
+  Eigen::MatrixXd A(3, 3);
+  A << 0.3, 0, 0, 0.7, -1.1, 0.4, -0.2, 0.9, 0.6;
+  for (const double in : {1.3, 0.7, 0.31, -2.9}) {
+    const ZerosAndGain found =
+        zeros({A, Eigen::Vector3d(0, in, -0.8), Eigen::RowVector3d(0.9, 0, 0), Eigen::MatrixXd::Zero(1, 1), 0});
+    EXPECT_EQ(found.gain, 0) << in;
+    EXPECT_EQ(found.zeros.values.size(), 0) << in;
+  }
+}
+
 /// Undamped, with a force on one coordinate and the place of another: inertias of any condition, stiffnesses of four
 /// powers of ten.
 LinearSystem undamped_of_any_inertias(std::mt19937& any) {
