@@ -208,6 +208,20 @@ def test_a_fit_finds_what_made_the_data(wheel):
     assert wheel.run()["axle"] == pytest.approx(data["axle"], abs=1e-6)
 
 
+def test_masked_values_count_as_gaps(wheel):
+    made = wheel.copy().set("loads.spring.stiffness", 9.1).set("initial.hinges.axle.position", [0.3]).run()
+    wrong = numpy.array(made["axle"])
+    wrong[3:9] = 7
+    masked = numpy.ma.masked_equal(wrong, 7)
+    fit = wheel.set("initial.hinges.axle.position", [0.3]).tune("loads.spring.stiffness=5..", {"t": made.t, "axle": masked})
+    assert fit["parameters"][0]["value"] == pytest.approx(9.1, rel=1e-4)
+    assert fit["data"]["values"] == len(wrong) - 6
+    with pytest.raises(withy.SceneError, match="nan"):
+        wheel.inverse({"t": made.t, "axle": masked})
+    whole = numpy.ma.array((0.1 * made.t**2), mask=False)
+    assert wheel.inverse({"t": made.t, "axle": whole})["status"] == "completed"
+
+
 def test_a_fit_takes_tables_with_gaps_and_deviations(wheel):
     wheel.set("initial.hinges.axle.position", [0.3])
     made = wheel.copy().set("loads.spring.stiffness", 9.1).run()

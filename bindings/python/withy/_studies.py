@@ -17,7 +17,7 @@ from ._parts import plain
 from ._result import Result, name_in_csv
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 Progress = Callable[[float, float], Any]
 Path = Union[str, "os.PathLike[str]"]
@@ -42,11 +42,19 @@ def _state(at: At) -> Source:
     return os.fspath(at), None
 
 
+def _numbers(column: ArrayLike) -> NDArray[numpy.float64]:
+    """A column as floats: what is masked was not measured, as what is nan."""
+    values: NDArray[numpy.float64] = numpy.array(column, float)
+    if isinstance(column, numpy.ma.MaskedArray):
+        values[getattr(column, "mask")] = numpy.nan  # its own types know no masks
+    return values
+
+
 def _table(name: str, table: Table) -> Source:
     """A table: the name of its file, or its text with a name for messages."""
     if not hasattr(table, "items"):  # those of pandas are no mappings
         return os.fspath(table), None
-    columns = {head: numpy.asarray(column, float) for head, column in table.items()}
+    columns = {head: _numbers(column) for head, column in table.items()}
     if isinstance(table, Result):  # in files brackets hold units alone
         columns = {name_in_csv(head): column for head, column in columns.items()}
     shapes = {column.shape for column in columns.values()}
