@@ -42,6 +42,20 @@ TrialRow row_of(const std::vector<const Axis*>& columns, std::size_t row) {
   return values;
 }
 
+bool is_value(const std::string& head) { return plain_number(head) || read_any_quantity(head).value; }
+
+/// Numbers are kept apart as long as all levels are such.
+void add_level(const std::string& cell, Levels& levels) {
+  const auto x = plain_number(cell);
+  if (levels.values.empty() && x) {
+    levels.numbers.push_back(*x);
+    return;
+  }
+  for (const double known : levels.numbers) levels.values.emplace_back(known);
+  levels.numbers.clear();
+  levels.values.push_back(x ? Value(*x) : Value(cell));
+}
+
 }  // namespace
 
 std::vector<TrialRow> rows_of_names(const std::vector<Axis>& axes, const std::map<std::string, std::size_t>& grids) {
@@ -69,24 +83,14 @@ ListColumn read_list_column(const std::string& file, const std::string& column, 
     throw study::InputError(fmt::format("{}:1:1: no column {}{}", file, in_quotes(column), suggestion(column, head)));
   const std::size_t index = at == head.end() ? 0 : static_cast<std::size_t>(at - head.begin());
   ListColumn list{{}, sha256(text)};
-  bool plain = true;
+  if (at == head.end() && is_value(head[0])) add_level(head[0], list.levels);
   for (CsvRow row; rows.next(row);) {
     const std::string problem = rows.problem(row);
     if (!problem.empty()) throw study::InputError(fmt::format("{}:{}:1: {}", file, row.line, problem));
-    const std::string& cell = row.cells[index];
-    if (cell.empty())
+    if (row.cells[index].empty())
       throw study::InputError(fmt::format("{}:{}:{}: got an empty cell; need a value of {}", file, row.line,
                                           row.columns[index], in_quotes(column)));
-    const auto x = plain_number(cell);
-    if (plain && !x) {
-      for (const double known : list.levels.numbers) list.levels.values.emplace_back(known);
-      list.levels.numbers.clear();
-      plain = false;
-    }
-    if (plain)
-      list.levels.numbers.push_back(*x);
-    else
-      list.levels.values.push_back(x ? Value(*x) : Value(cell));
+    add_level(row.cells[index], list.levels);
   }
   if (list.levels.size() == 0) throw study::InputError(file + ": need a head and at least one row");
   return list;

@@ -17,8 +17,9 @@ struct ListColumn {
   std::string sha256;  ///< of the file
 };
 
-/// The column of that name in the head. A file of one column is taken whatever its head says, unless `named`.
-/// \throws InputError where there is no such file or column, or a cell is empty.
+/// The column of that name in the head. A file of one column is taken whatever its head says, unless `named`; a head
+/// that is a number or a quantity is its first value. \throws InputError where there is no such file or column, or a
+/// cell is empty.
 ListColumn read_list_column(const std::string& file, const std::string& column, bool named);
 
 /// The rows of lists that bring other names than the rows before them, each with the values of all columns of its file,

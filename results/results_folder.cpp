@@ -38,6 +38,13 @@ Json read_record(const std::filesystem::path& folder) {
   return j.is_object() && j.value("format", "") == format_of_record ? j : Json();
 }
 
+/// Who took the folder last, in words.
+std::string recorded_writer(const std::filesystem::path& folder) {
+  const Json kept = read_record(folder);
+  const Json process = kept.is_null() ? Json() : kept.value("process", Json());
+  return process.is_number() ? "process " + process.dump() : "another process";
+}
+
 /// Whether `result.json` is no record, nor what is left of one.
 bool is_foreign(const std::filesystem::path& folder) {
   const std::string text = text_of_record(folder);
@@ -160,10 +167,8 @@ void ResultsFolder::lock() {
   const int error = errno;
   ::close(file_);
   if (error != EWOULDBLOCK) throw std::system_error(error, std::generic_category(), record.string());
-  const Json kept = read_record(path_);
-  const Json process = kept.is_null() ? Json() : kept.value("process", Json());
   throw FolderBusy(fmt::format("{} is being written by {}; wait for its end, or give another folder", path_.string(),
-                               process.is_number() ? "process " + process.dump() : "another process"));
+                               recorded_writer(path_)));
 }
 
 // In place, since the lock is the file's. It is never cut to nothing: ext4 has a file that was written to the disk at
@@ -176,6 +181,15 @@ void ResultsFolder::write(const std::string& text) const {
     if (count > 0) done += static_cast<std::size_t>(count);
   }
   if (::ftruncate(file_, static_cast<off_t>(text.size())) != 0) fail();
+}
+
+std::string writer_of(const std::filesystem::path& folder) {
+  const int file = ::open((folder / name_of_record).c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return {};
+  // Shared, so that several may ask at once; closing gives it back.
+  const bool locked = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return locked ? recorded_writer(folder) : std::string();
 }
 
 std::string folder_suffix(const std::vector<std::string>& settings) {

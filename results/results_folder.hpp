@@ -56,6 +56,10 @@ class ResultsFolder {
   std::string changed_;
 };
 
+/// Who writes the folder now: "process 4711", or "another process" where its record does not say which; empty where
+/// nobody does.
+std::string writer_of(const std::filesystem::path& folder);
+
 /// What tells a folder's name from those of other settings: "" where there are none, "-loads.slew.time_scale=1.2", or
 /// where that is no good name for a folder "-set-1a2b3c4d".
 std::string folder_suffix(const std::vector<std::string>& settings);

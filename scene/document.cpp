@@ -21,6 +21,7 @@
 #include "withy/scene/names.hpp"
 #include "withy/scene/text_scan.hpp"
 #include "withy/scene/units.hpp"
+#include "withy/scene/whole_escapes.hpp"
 
 namespace withy {
 namespace {
@@ -45,8 +46,8 @@ Value plain_scalar(const std::string& text) {
 /// Builds the value tree from the events of the YAML parser.
 class Builder final : public YAML::EventHandler {
  public:
-  Builder(std::string_view text, const Origin& origin, Document& document, Diagnostics& diagnostics)
-      : text_(text), origin_(origin), document_(document), diagnostics_(diagnostics) {}
+  Builder(const WholeEscapes& text, const Origin& origin, Document& document, Diagnostics& diagnostics)
+      : text_(text.text()), escapes_(text), origin_(origin), document_(document), diagnostics_(diagnostics) {}
 
   /// False once something was left out that checks would miss.
   [[nodiscard]] bool whole() const { return whole_; }
@@ -54,7 +55,7 @@ class Builder final : public YAML::EventHandler {
 
   Place place(const YAML::Mark& mark, std::string path) const {
     if (origin_.line != 0) return {origin_.line, 0, std::move(path)};
-    return {mark.line + 1, mark.column + 1, std::move(path)};
+    return {mark.line + 1, escapes_.column(mark.line + 1, mark.column + 1), std::move(path)};
   }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
@@ -227,6 +228,7 @@ class Builder final : public YAML::EventHandler {
   }
 
   std::string_view text_;
+  const WholeEscapes& escapes_;
   const Origin& origin_;
   Document& document_;
   Diagnostics& diagnostics_;
@@ -317,9 +319,10 @@ bool read_document(std::string_view text, const Origin& origin, Document& docume
     diagnostics.error(origin.line == 0 ? file : Place{origin.line, 0, origin.path}, fault->message);
     return false;
   }
-  Builder builder(text, origin, document, diagnostics);
+  const WholeEscapes whole(text);
+  Builder builder(whole, origin, document, diagnostics);
   try {
-    std::istringstream stream{std::string(text)};
+    std::istringstream stream{std::string(whole.text())};
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(builder)) {
     }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "withy/apps/withy/engine.hpp"
 #include "withy/fem/import_report.hpp"
@@ -37,7 +38,19 @@ ExitStatus import_model(ImportArguments a) {
   return ExitStatus::done;
 }
 
+/// The name of a job has no ending of its own: one that has may be a model's that is misspelt, or of another kind.
+void check_is_mesh(const fem::ImportJob& a) {
+  std::string missing;
+  for (const std::filesystem::path& file : fem::files_read(a)) {
+    if (std::filesystem::exists(file)) return;
+    missing += (missing.empty() ? "no " : ", no ") + file.string();
+  }
+  throw InputError(a.job + " is no model, whose name ends with .urdf, .xml, .mjcf or .dat, and no mesh: there is " +
+                   missing);
+}
+
 ExitStatus import_mesh(const ImportArguments& a) {
+  check_is_mesh(a);
   if (a.root.empty()) throw InputError("--root is required: the nodes of the mesh that are clamped");
   try {
     const fem::Imported imported = fem::import(a);

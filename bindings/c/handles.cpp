@@ -14,6 +14,11 @@ const char* name_of(Kind kind) {
 
 }  // namespace
 
+std::string& why_no_library() noexcept {
+  thread_local std::string why;
+  return why;
+}
+
 void need(bool condition, const char* otherwise) {
   if (!condition) throw BadUse(otherwise);
 }
@@ -38,7 +43,9 @@ withy_port port_at(const std::vector<host::Port>& ports, std::size_t index) {
 const char* withy_version(void) { return WITHY_VERSION; }
 
 const char* withy_error(const void* handle) {
-  return handle == nullptr ? "the handle is null" : static_cast<const withy::c::Handle*>(handle)->error();
+  if (handle != nullptr) return static_cast<const withy::c::Handle*>(handle)->error();
+  const std::string& why = withy::c::why_no_library();
+  return why.empty() ? "the handle is null" : why.c_str();
 }
 
 void withy_free(void* handle) { delete static_cast<withy::c::Handle*>(handle); }

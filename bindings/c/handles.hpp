@@ -131,6 +131,9 @@ bool good(const H* handle) {
   return handle != nullptr && handle->kind == H::its_kind;
 }
 
+/// Why the last attempt of the calling thread to make a library failed, for which there is no handle.
+std::string& why_no_library() noexcept;
+
 /// Thrown for what WITHY_BAD_USE stands for.
 struct BadUse : std::runtime_error {
   using std::runtime_error::runtime_error;

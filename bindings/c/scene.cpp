@@ -1,6 +1,8 @@
 /// \file
 /// Libraries, scenes and results in C.
 #include <algorithm>
+#include <cstddef>
+#include <exception>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,28 +19,50 @@ using withy::c::need;
 using withy::c::need_size;
 using withy::c::port_at;
 
+namespace {
+
+/// \throws withy::c::BadUse
+void check(const withy_library_options& options) {
+  need(options.size >= sizeof(withy_library_options), "options: need their size in its member `size`");
+  need(options.plugin_count == 0 || options.plugins != nullptr, "options: plugins is null; need an array");
+  for (std::size_t i = 0; i < options.plugin_count; ++i)
+    need(options.plugins[i] != nullptr, "options: a name in plugins is null");
+}
+
+host::LibraryOptions own_options(const withy_library_options& options) {
+  host::LibraryOptions own;
+  for (std::size_t i = 0; i < options.plugin_count; ++i) own.plugins.emplace_back(options.plugins[i]);
+  if (options.log != nullptr)
+    own.log = [log = options.log, context = options.context](std::string_view remark) {
+      log(context, std::string(remark).c_str());
+    };
+  return own;
+}
+
+}  // namespace
+
 withy_status withy_library_create(const withy_library_options* options, withy_library** library) {
-  if (library == nullptr) return WITHY_BAD_USE;
-  *library = nullptr;
-  if (options != nullptr) {
-    if (options->size < sizeof(withy_library_options)) return WITHY_BAD_USE;
-    if (options->plugin_count > 0 && options->plugins == nullptr) return WITHY_BAD_USE;
-    for (std::size_t i = 0; i < options->plugin_count; ++i)
-      if (options->plugins[i] == nullptr) return WITHY_BAD_USE;
-  }
-  try {
-    host::LibraryOptions own;
-    if (options != nullptr) {
-      for (std::size_t i = 0; i < options->plugin_count; ++i) own.plugins.emplace_back(options->plugins[i]);
-      if (options->log != nullptr)
-        own.log = [log = options->log, context = options->context](std::string_view remark) {
-          log(context, std::string(remark).c_str());
-        };
+  const auto fail = [](withy_status status, const char* why) {
+    try {
+      withy::c::why_no_library() = why;
+    } catch (...) {
+      withy::c::why_no_library().clear();
     }
-    *library = new withy_library(host::Library(std::move(own)));
+    return status;
+  };
+  if (library == nullptr) return fail(WITHY_BAD_USE, "need a place for the handle");
+  *library = nullptr;
+  try {
+    if (options != nullptr) check(*options);
+    *library = new withy_library(host::Library(options == nullptr ? host::LibraryOptions() : own_options(*options)));
+    withy::c::why_no_library().clear();
     return WITHY_OK;
+  } catch (const withy::c::BadUse& e) {
+    return fail(WITHY_BAD_USE, e.what());
+  } catch (const std::exception& e) {
+    return fail(WITHY_ENVIRONMENT, e.what());
   } catch (...) {
-    return WITHY_ENVIRONMENT;
+    return fail(WITHY_ENVIRONMENT, "a plugin has thrown what is no exception of the standard library");
   }
 }
 

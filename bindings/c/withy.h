@@ -2,7 +2,8 @@
  * The C interface of withy: library withy-c, CMake target withy::c. For hosts in C and whatever calls C.
  *
  * Everything is reached through handles. A function returns a status; where it is not WITHY_OK nothing has been changed
- * that the function's text does not name, and withy_error() of the handle that was passed first says why in a sentence.
+ * that the function's text does not name, but that a handle that was to be made is null; free what it was before the
+ * call. withy_error() of the handle that was passed first says why in a sentence.
  * Arrays belong to the caller, who gives their sizes; texts belong to the handle and last until its next call that is
  * not const, or its end. No function exits, prints, or throws. A library and a scene that nobody changes may be shared
  * by threads: each of these has errors of its own there, which last until its own next call. Other handles are of one
@@ -58,7 +59,7 @@ typedef struct withy_library_options {
 /** "0.2.0". */
 WITHY_API const char* withy_version(void);
 /** Why the last call with this handle failed, of a library or a scene the last one of the calling thread; empty where
- * it did not. Never null. */
+ * it did not. Of null: why the last withy_library_create of the calling thread failed. Never null. */
 WITHY_API const char* withy_error(const void* handle);
 /** Ends any handle; null is allowed. Others made from it live on. */
 WITHY_API void withy_free(void* handle);

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "withy/bindings/python/made.hpp"
@@ -32,6 +33,19 @@ inline py::list units_of(const std::vector<Port>& ports) {
   py::list units;
   for (const Port& port : ports) units.append(port.unit);
   return units;
+}
+
+/// What may hold the bytes of a file that is not UTF-8, for people: those as \xb0.
+inline py::str readable(std::string_view text) {
+  PyObject* made = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace");
+  if (made == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(made);
+}
+/// The name of a file as Python has such names, from which os.fsencode() makes the same bytes.
+inline py::str file_name(const std::string& name) {
+  PyObject* made = PyUnicode_DecodeFSDefaultAndSize(name.data(), static_cast<py::ssize_t>(name.size()));
+  if (made == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(made);
 }
 
 /// A vector as an array, without a copy.

@@ -36,6 +36,7 @@ using withy::python::Array;
 using withy::python::array_of;
 using withy::python::names_of;
 using withy::python::OneAtATime;
+using withy::python::readable;
 using withy::python::Signals;
 using withy::python::units_of;
 
@@ -163,7 +164,7 @@ void raise(const char* name, Arguments&&... arguments) {
 void raise_stopped(const SimulationStopped& e) {
   const py::object cause = withy::python::raised_by_load(e.what());
   const py::object error =
-      py::module_::import("withy._errors").attr("SimulationStopped")(e.what(), e.status(), e.time());
+      py::module_::import("withy._errors").attr("SimulationStopped")(readable(e.what()), e.status(), e.time());
   if (cause) PyException_SetCause(error.ptr(), cause.inc_ref().ptr());
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
 }
@@ -172,21 +173,21 @@ void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(pointer);
   } catch (const withy::SceneError& e) {
-    raise("SceneError", e.what());
+    raise("SceneError", readable(e.what()));
   } catch (const withy::study::InputError& e) {
-    raise("SceneError", e.what());
+    raise("SceneError", readable(e.what()));
   } catch (const withy::PluginError& e) {
-    raise("PluginError", e.what());
+    raise("PluginError", readable(e.what()));
   } catch (const SimulationStopped& e) {
     raise_stopped(e);
   } catch (const withy::ResultsError& e) {
-    raise("StoreError", e.what());
+    raise("StoreError", readable(e.what()));
   } catch (const withy::FolderBusy& e) {
-    raise("StoreError", e.what());
+    raise("StoreError", readable(e.what()));
   } catch (const std::out_of_range& e) {
-    PyErr_SetObject(PyExc_KeyError, py::str(e.what()).ptr());
+    PyErr_SetObject(PyExc_KeyError, readable(e.what()).ptr());
   } catch (const std::system_error& e) {
-    const py::object error = py::reinterpret_borrow<py::object>(PyExc_OSError)(e.code().value(), e.what());
+    const py::object error = py::reinterpret_borrow<py::object>(PyExc_OSError)(e.code().value(), readable(e.what()));
     PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
   }
 }

@@ -10,6 +10,7 @@
 #include "withy/bindings/python/followed.hpp"
 #include "withy/bindings/python/python_failure.hpp"
 #include "withy/results/hdf5_recorder.hpp"
+#include "withy/results/output_file.hpp"
 #include "withy/scene/scene.hpp"
 
 namespace withy::python {
@@ -32,11 +33,13 @@ void write_hdf5(const std::filesystem::path& path, const std::vector<std::string
   if (const std::string missing = withy::hdf5_missing(); !missing.empty()) throw std::runtime_error(missing);
   std::vector<withy::Column> columns;
   for (std::size_t c = 0; c < names.size(); ++c) columns.push_back({names[c], units[c]});
-  const auto file = withy::make_hdf5_recorder(path);
+  withy::Part part(path);  // a disk that is full leaves the file that was there
+  auto file = withy::make_hdf5_recorder(part.path());
   file->begin(columns);
   for (py::ssize_t row = 0; row < table.shape(0); ++row) file->row({table.data(row, 0), columns.size()});
   for (const auto& [name, text] : descriptions) file->describe(name, text);
   file->end();
+  part.finish();
 }
 
 /// The plugins, with loads and bodies in Python; remarks go to a function, or nowhere.
@@ -46,7 +49,7 @@ Library open_library(std::vector<std::filesystem::path> plugins, const py::objec
     options.log = [log](std::string_view remark) {
       const py::gil_scoped_acquire held;
       try {
-        log(py::str(remark.data(), remark.size()));
+        log(readable(remark));
       } catch (py::error_already_set& e) {
         e.discard_as_unraisable("withy's log");
       }
@@ -91,9 +94,9 @@ void bind_scene(py::module_& m) {
       // Of a copy too: a body in Python is asked for its shape, and another thread may have its turn there.
       .def("check", [](const Scene& s) { Scene(s).check(); })
       .def_property_readonly("text", &Scene::text)
-      .def_property_readonly("name", &Scene::name)
+      .def_property_readonly("name", [](const Scene& s) { return file_name(s.name()); })
       .def_property_readonly("changes", &Scene::changes)
-      .def_property_readonly("folder", &Scene::folder)
+      .def_property_readonly("folder", [](const Scene& s) { return file_name(s.folder()); })
       .def("run", &run)
       .def("compare",
            [](const Scene& s, const Names& formulations, const std::string& reference, const Names& outputs,

@@ -9,6 +9,7 @@
 #include "withy/results/report/paraview.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/results_error.hpp"
+#include "withy/results/results_folder.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy {
@@ -18,6 +19,9 @@ std::vector<std::string> runs_at(const std::filesystem::path& given, const std::
   keep_inputs(out, {file});
   if (std::filesystem::exists(file)) return read_report(file);
   if (!std::filesystem::exists(given)) throw study::InputError("there is no folder '" + given.string() + "'");
+  if (const std::string writer = writer_of(given); !writer.empty())
+    throw ResultsError(given.string() + " holds no " + report_name + " yet: its run is still going on, in " + writer +
+                       "; wait for its end, or see its results.csv with withy plot");
   throw ResultsError(given.string() + " holds no " + report_name +
                      (std::filesystem::exists(given / "results.csv")
                           ? ": its run was killed, or made by a build without the page; "

@@ -164,6 +164,18 @@ cases: 2
   EXPECT_EQ(drawn.size(), 12U) << "drawn anew for each case";
 }
 
+/// A head of any words is none of the values; a number or a quantity is one.
+TEST(Cases, AListOfOneColumnMayHaveNoHead) {
+  const PlanFolder folder;
+  const std::string vary = "vary: {bodies.rod.mass: {list: list.csv}}\n";
+  for (const char* text : {"1\n2\n", "mass\n1\n2\n", "bodies.rod.mass\n1\n2\n"}) {
+    folder.write("list.csv", text);
+    EXPECT_EQ(column(folder.plan(vary), 0), (std::vector<double>{1, 2})) << text;
+  }
+  folder.write("list.csv", "1 kg\n2\n");
+  EXPECT_EQ(Cases(folder.plan(vary)).size(), 2U);
+}
+
 TEST(Cases, ListsAreReadAsSpreadsheetsWriteThem) {
   const PlanFolder folder;
   folder.write("pairs.csv", "\xEF\xBB\xBFgravity.1,bodies.rod.mass\r\n-9,1\r\n\r\n-8,2\r\n");

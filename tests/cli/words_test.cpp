@@ -238,6 +238,13 @@ const Fault faults[] = {
      2,
      {"--outputs: no 'boom.tip.w'; did you mean 'boom.tip."}},
     {"model_missing", "", "", {"import", "nothing.urdf"}, 2, {"cannot read nothing.urdf: No such file"}},
+    {"neither_model_nor_mesh",
+     "",
+     "",
+     {"import", "robot.urd"},
+     2,
+     {"robot.urd is no model, whose name ends with .urdf, .xml, .mjcf or .dat, and no mesh: there is no "
+      "robot.urd.inp"}},
     {"picture_of_another_kind",
      "",
      "",

@@ -173,11 +173,13 @@ static void misuse(withy_library* library, withy_scene* scene) {
 
   memset(&old, 0, sizeof old);
   EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
+  EXPECT(strstr(withy_error(NULL), "size") != NULL, NULL);
   old.size = sizeof old;
   old.plugin_count = 1;
   EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
   old.plugins = &no_folder;
   EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
+  EXPECT(strstr(withy_error(NULL), "a name in plugins is null") != NULL, NULL);
   withy_free(NULL);
 }
 

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -220,6 +221,14 @@ def test_masked_values_count_as_gaps(wheel):
         wheel.inverse({"t": made.t, "axle": masked})
     whole = numpy.ma.array((0.1 * made.t**2), mask=False)
     assert wheel.inverse({"t": made.t, "axle": whole})["status"] == "completed"
+
+
+def test_files_of_other_encodings_are_refused_in_words(wheel, tmp_path):
+    table = tmp_path / "table.csv"
+    table.write_bytes("t[s],axle[\u00b0]\n0,1\n1,2\n2,3\n".encode("latin1"))
+    for study in (lambda: wheel.tune(["loads.spring.stiffness"], table), lambda: wheel.inverse(table)):
+        with pytest.raises(withy.SceneError, match=re.escape(r"\xb0")):
+            study()
 
 
 def test_a_fit_takes_tables_with_gaps_and_deviations(wheel):

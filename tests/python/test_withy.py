@@ -268,6 +268,43 @@ def test_results_are_drawn(slew, tmp_path):
     axes.figure.savefig(tmp_path / "run.svg")
 
 
+@pytest.mark.skipif(sys.platform == "darwin", reason="its file systems know names in UTF-8 alone")
+def test_names_of_files_need_not_be_utf8(tmp_path):
+    name = os.fsencode(tmp_path / "p") + b"\xff.yaml"
+    with open(name, "wb") as file:
+        file.write((SCENES / "pendulum.yaml").read_bytes())
+    for path in (name, os.fsdecode(name)):
+        scene = withy.load(path)
+        assert scene.run(time={"end": 0.1}).status == "completed"
+        again = pickle.loads(pickle.dumps(scene.set("time.end", 0.1)))
+        assert again.run().status == "completed" and "p" in repr(again)
+    with pytest.raises(withy.SceneError, match=re.escape(r"\xff.yaml:")):
+        withy.load(os.fsdecode(name)).set("bodies.rod.mass", -1).check()
+    with pytest.raises(OSError, match=re.escape(r"none\xff.yaml")):
+        withy.load(os.fsdecode(b"none\xff.yaml"))
+
+
+def test_a_file_of_results_stays_where_the_disk_is_full(slew, tmp_path):
+    resource = pytest.importorskip("resource")
+    file = tmp_path / "run.h5"
+    try:
+        slew.run(time={"end": 0.2}).to_hdf5(file)
+    except RuntimeError as missing:
+        pytest.skip(str(missing))
+    before = file.read_bytes()
+    longer = slew.run(time={"end": 2, "output": 0.001})
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2 * len(before), limits[1]))
+    try:
+        with pytest.raises(OSError):
+            longer.to_hdf5(file)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert file.read_bytes() == before and os.listdir(tmp_path) == ["run.h5"]
+    longer.to_hdf5(file)
+    assert file.read_bytes() != before
+
+
 def test_results_are_kept_as_the_program_keeps_them(slew, tmp_path):
     result = slew.run(time={"end": 0.2})
     try:

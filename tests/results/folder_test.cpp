@@ -15,6 +15,7 @@
 #include "withy/results/kept_results.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/output_name.hpp"
+#include "withy/results/report/finished_runs.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/results_folder.hpp"
 #include "withy/study/input_error.hpp"
@@ -62,7 +63,23 @@ TEST(ResultsFolder, IsTakenByOneWriterAtATime) {
       }
     }
   }
+  EXPECT_EQ(writer_of(scratch / "out"), "");
   EXPECT_EQ(refusal(scratch / "out", "run", origin()), "");
+}
+
+/// Those who look at a folder learn who writes it, and that a run without a report was not killed.
+TEST(ResultsFolder, SaysWhoWritesIt) {
+  const Scratch scratch;
+  EXPECT_EQ(writer_of(scratch / "out"), "");
+  const ResultsFolder first(scratch / "out", "run", origin(), content, FolderUse::begin);
+  const std::string own = "process " + std::to_string(::getpid());
+  EXPECT_EQ(writer_of(scratch / "out"), own);
+  try {
+    static_cast<void>(runs_at(scratch / "out", scratch / "page.html"));
+    ADD_FAILURE() << "there is no report";
+  } catch (const ResultsError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("its run is still going on, in " + own));
+  }
 }
 
 TEST(ResultsFolder, RemovesTheSameResultBeforeItIsWrittenAnewAndNoOtherFile) {

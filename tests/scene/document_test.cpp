@@ -37,6 +37,23 @@ TEST(Documents, GiveScalarsTheKindTheyAreWrittenAs) {
   EXPECT_EQ(r["infinity"].number(), -INFINITY);
 }
 
+/// JSON has them in pairs of escapes, as many programs write all that is not ASCII. Places are those of the file.
+TEST(Documents, CharactersBeyondTheFirstPlaneAreReadFromJson) {
+  const Read r(
+      "{\"name\": \"a\\ud83d\\ude00b\", \"\\uD835\\uDD38\": \"\\\\ud83d\\\\ude00\",\n \"x\": \"\\u00e9\", \"last\": "
+      "1}");
+  ASSERT_TRUE(r.good && r.diagnostics.ok());
+  EXPECT_EQ(r["name"].text(), "a\U0001F600b");
+  EXPECT_EQ(r["\U0001D538"].text(), "\\ud83d\\ude00") << "an escaped backslash";
+  EXPECT_EQ(r["\U0001D538"].place().column, 44);
+  EXPECT_EQ(r["x"].place().column, 7);
+  const Read twice("{\"a\": \"\\ud83d\\ude00\", \"a\": 1}");
+  ASSERT_FALSE(twice.diagnostics.ok());
+  EXPECT_EQ(twice.diagnostics.errors()[0].place.column, 23);
+  const Read alone("{\"a\": \"\\ud83d\"}");
+  EXPECT_FALSE(alone.good);
+}
+
 TEST(Documents, GiveBackWhatIsWrittenInOneLine) {
   const std::vector<std::string> texts = {
       "arm",   "two words", "25 mm",       "-1 rpm", "a, b", "key: x", "{x}",  "[1]",   "#c",

@@ -19,14 +19,19 @@ def as_list(several: Iterable[_T]) -> list[_T]:
     return [cast(_T, several)] if isinstance(several, str) else list(several)
 
 
+def encoded(path: Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]) -> bytes:
+    """The name of a file as the system has it: one that is not UTF-8 too."""
+    return os.fsencode(path)
+
+
 def folders(plugins: Iterable[Union[str, "os.PathLike[str]"]]) -> tuple[str, ...]:
     """Whole names of folders of plugins: what keeps them finds the same ones wherever the process goes."""
-    return tuple(os.path.abspath(os.fspath(p)) for p in as_list(plugins))
+    return tuple(os.path.abspath(os.fsdecode(p)) for p in as_list(plugins))
 
 
 def library(plugins: Sequence[Union[str, "os.PathLike[str]"]]) -> _withy.Library:
     """One for each list of folders, made when it is first needed; remarks are warnings."""
     key = folders(plugins)
     if key not in _libraries:
-        _libraries[key] = _withy.Library(list(key), lambda remark: warnings.warn(remark, RuntimeWarning, stacklevel=3))
+        _libraries[key] = _withy.Library([encoded(folder) for folder in key], lambda remark: warnings.warn(remark, RuntimeWarning, stacklevel=3))
     return _libraries[key]

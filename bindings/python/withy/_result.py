@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from . import _withy
+from ._library import encoded
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -142,7 +143,7 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
             RuntimeError: where the package was built without HDF5.
             OSError: where the file cannot be written.
         """
-        _withy.write_hdf5(os.fspath(path), list(self), list(self.units.values()), self.table,
+        _withy.write_hdf5(encoded(path), list(self), list(self.units.values()), self.table,
                           [("run", json.dumps(self.summary)), ("status", self.status)])
 
     def plot(self, *names: str, axes: Any = None) -> Any:

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from . import _withy
-from ._library import folders, library
+from ._library import encoded, folders, library
 from ._parts import plain
 from ._result import Result, unknown
 from ._studies import Path, Progress, Studies, read_json
@@ -32,7 +32,7 @@ def load(path: Path, plugins: Sequence[Path] = (), *, check: bool = True) -> Sce
         OSError: where the file cannot.
     """
     kept = folders(plugins)
-    return _checked(_withy.Scene.read(library(kept), os.fspath(path)), kept, check)
+    return _checked(_withy.Scene.read(library(kept), encoded(path)), kept, check)
 
 
 def loads(text: str, name: str = "scene", plugins: Sequence[Path] = (), *, check: bool = True) -> Scene:
@@ -43,7 +43,7 @@ def loads(text: str, name: str = "scene", plugins: Sequence[Path] = (), *, check
         SceneError: as load() does.
     """
     kept = folders(plugins)
-    return _checked(_withy.Scene.parse(library(kept), text, name), kept, check)
+    return _checked(_withy.Scene.parse(library(kept), text, encoded(name)), kept, check)
 
 
 def _checked(made: _withy.Scene, plugins: Sequence[str], check: bool) -> Scene:
@@ -301,8 +301,8 @@ def _set_members(scene: Scene, path: str, value: Any) -> None:
 def _parsed(text: str, name: str, plugins: Sequence[str], folder: str) -> _withy.Scene:
     """Names of other files begin at the folder or, where it is empty, at that of the name as it is now."""
     if folder:
-        return _withy.Scene.parse(library(plugins), text, name, folder)
-    return _withy.Scene.parse(library(plugins), text, name)
+        return _withy.Scene.parse(library(plugins), text, encoded(name), encoded(folder))
+    return _withy.Scene.parse(library(plugins), text, encoded(name))
 
 
 def _restored(text: str, name: str, plugins: tuple[str, ...], changes: list[str], folder: str = "") -> Scene:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy
 
 from . import _withy
-from ._library import as_list
+from ._library import as_list, encoded
 from ._parts import plain
 from ._result import Result, name_in_csv
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, float], Any]
 Path = Union[str, "os.PathLike[str]"]
-Source = tuple[str, Union[str, None]]
+Source = tuple[Union[str, bytes], Union[str, None]]
 At = Union[Path, Mapping[str, Any], None]
 Table = Union[Path, Mapping[str, "ArrayLike"]]
 Number = Union[float, str]
@@ -39,7 +39,7 @@ def _state(at: At) -> Source:
         return "", None
     if isinstance(at, Mapping):
         return "at", json.dumps(plain(at))
-    return os.fspath(at), None
+    return encoded(at), None
 
 
 def _numbers(column: ArrayLike) -> NDArray[numpy.float64]:
@@ -53,7 +53,7 @@ def _numbers(column: ArrayLike) -> NDArray[numpy.float64]:
 def _table(name: str, table: Table) -> Source:
     """A table: the name of its file, or its text with a name for messages."""
     if not hasattr(table, "items"):  # those of pandas are no mappings
-        return os.fspath(table), None
+        return encoded(table), None
     columns = {head: _numbers(column) for head, column in table.items()}
     if isinstance(table, Result):  # in files brackets hold units alone
         columns = {name_in_csv(head): column for head, column in columns.items()}

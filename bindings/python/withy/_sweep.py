@@ -13,7 +13,7 @@ import numpy
 
 from . import _withy
 from ._errors import StoreError
-from ._library import folders, library
+from ._library import encoded, folders, library
 from ._result import unknown
 
 if TYPE_CHECKING:
@@ -26,13 +26,17 @@ Key = tuple[str, str, tuple[str, ...]]
 _open: dict[Key, _withy.Sweep] = {}
 
 
+def _engine(key: Key, force: bool) -> _withy.Sweep:
+    plan, store, plugins = key
+    return _withy.Sweep(library(plugins), encoded(plan), encoded(store), force, [encoded(folder) for folder in plugins])
+
+
 def _opened(key: Key, fingerprint: str) -> _withy.Sweep:
     opened = _open.get(key)  # threads of several sweeps may be here at once
     if opened is None or opened.fingerprint != fingerprint:
-        plan, store, plugins = key
-        opened = _withy.Sweep(library(plugins), plan, store, False, list(plugins))
+        opened = _engine(key, False)
         if opened.fingerprint != fingerprint:
-            raise StoreError(f"{plan}: this process reads another plan, scene or plugins than the one that began the sweep")
+            raise StoreError(f"{key[0]}: this process reads another plan, scene or plugins than the one that began the sweep")
         _open.clear()
         _open[key] = opened
     return opened
@@ -116,8 +120,8 @@ def sweep(plan: Path, executor: concurrent.futures.Executor | None = None, *, ou
     """
     if parts is not None and parts < 1:
         raise ValueError(f"parts: got {parts}; need at least 1")
-    key = (os.path.abspath(os.fspath(plan)), os.path.abspath(os.fspath(out)), folders(plugins))
-    own = _withy.Sweep(library(key[2]), key[0], key[1], force, list(key[2]))
+    key = (os.path.abspath(os.fsdecode(plan)), os.path.abspath(os.fsdecode(out)), folders(plugins))
+    own = _engine(key, force)
     stopped: str | None = None
     if executor is None:
         *_, stopped = own.run(1, 1, jobs, progress)
@@ -138,5 +142,5 @@ def sweep(plan: Path, executor: concurrent.futures.Executor | None = None, *, ou
         finally:  # after an error, or a failure at which the plan stops
             running = [task for task in tasks if not task.cancel()]
         concurrent.futures.wait(running)  # parts that have begun go on to their end
-    cases, done, failed = _withy.collect(key[1])
+    cases, done, failed = _withy.collect(encoded(key[1]))
     return SweepResult(pathlib.Path(key[1]), cases, done, failed, stopped)
