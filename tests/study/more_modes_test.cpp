@@ -84,6 +84,21 @@ TEST(MoreModesOfARun, BeginAtRestBesideWhatTheInitialStateSaysOfTheOthers) {
   EXPECT_EQ(of_boom(more), (std::vector<double>{had[0], had[1], 0, had[2], had[3], 0, had[4], 0}));
 }
 
+/// A limit between the deflections of both: what passes it is no motion to compare with.
+TEST(MoreModesOfARun, HaveTheLimitsOfAnyRun) {
+  const auto deflection = [](int modes) {
+    return certified(slew_with(modes), Estimate::never).summary.peak_deflection_ratio.at("link2");
+  };
+  const double few = deflection(1), more = deflection(2);
+  ASSERT_GT(more, 1.001 * few) << "a mode more is to bend further";
+  SceneValues values = slew_with(1);
+  const CertifiedRun run = certified(values.set("limits.deflection", Value(0.5 * (few + more)), "the test"));
+  EXPECT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
+  EXPECT_FALSE(run.certificate.more_modes.more);
+  EXPECT_THAT(run.certificate.more_modes.why_not,
+              HasSubstr("the run with one mode more of each ended as diverged: t = "));
+}
+
 TEST(MoreModesOfARun, AreNotLookedAtUnlessAskedFor) {
   const MoreModesOutcome outcome = certified(short_slew(), Estimate::automatic).certificate.more_modes;
   EXPECT_FALSE(outcome.more);
