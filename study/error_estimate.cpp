@@ -8,6 +8,7 @@
 
 #include "withy/core/simulation/coarse_steps.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/mass_centre.hpp"
 #include "withy/core/simulation/paired_run.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/study/accuracy.hpp"
@@ -21,26 +22,59 @@ namespace {
 /// Energy and momenta of the states given, against those of the first.
 class DriftWatch {
  public:
-  explicit DriftWatch(const RunSummary& summary) : summary_(summary) {}
-  void look(const Energies& e, double work) {
-    if (!first_) first_ = e, first_work_ = work;
-    const auto raise = [](double& drift, double error, double scale) {
-      if (scale > 0) drift = std::max(drift, error / scale);
-    };
-    const auto apart = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
-      return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-    };
-    const double gained = e.kinetic + e.potential - first_->kinetic - first_->potential;
-    raise(drifts_.energy, std::abs(gained - (work - first_work_)), summary_.energy_scale);
-    raise(drifts_.linear, apart(e.linear_momentum, first_->linear_momentum), summary_.momentum.linear_scale);
-    raise(drifts_.angular, apart(e.angular_momentum, first_->angular_momentum), summary_.momentum.angular_scale);
+  /// \param equations whose energies it is given
+  DriftWatch(const RunSummary& summary, const Model& model, const EquationsOfMotion& equations, const State& initial)
+      : summary_(summary) {
+    if (summary.momentum.conserved) centre_.emplace(model, equations, initial.y);
   }
-  [[nodiscard]] const Drifts& drifts() const { return drifts_; }
+  /// \param work since the first
+  void look(const State& state, const Energies& e, double work) {
+    if (looks_ == 0) first_ = e, first_work_ = work;
+    const double gained = e.kinetic + e.potential - first_.kinetic - first_.potential;
+    raise(drifts_.energy, std::abs(gained - (work - first_work_)), summary_.energy_scale);
+    if (centre_) look_at_momenta(state, e);
+    ++looks_;
+  }
+  /// The drifts up to the last state.
+  [[nodiscard]] const Drifts& drifts() {
+    if (left_) raise_angular(left_->state, left_->energies);
+    left_.reset();
+    return drifts_;
+  }
 
  private:
+  struct Seen {
+    State state;
+    Energies energies;
+  };
+  static void raise(double& drift, double error, double scale) {
+    if (scale > 0) drift = std::max(drift, error / scale);
+  }
+  void look_at_momenta(const State& state, const Energies& e) {
+    // The mass centre costs as much as three readings.
+    constexpr std::size_t every = 8;
+    raise(drifts_.linear, (vector(e.linear_momentum) - vector(first_.linear_momentum)).norm(),
+          summary_.momentum.linear_scale);
+    if (looks_ % every == 0) {
+      raise_angular(state, e);
+      left_.reset();
+    } else {
+      left_ = Seen{state, e};
+    }
+  }
+  void raise_angular(const State& state, const Energies& e) {
+    const Vector3 angular = spin(e, centre_->at(state.y).position);
+    if (looks_ == 0) first_angular_ = angular;
+    raise(drifts_.angular, (angular - first_angular_).norm(), summary_.momentum.angular_scale);
+  }
+
   const RunSummary& summary_;
-  std::optional<Energies> first_;
+  std::optional<MassCentre> centre_;  ///< nothing where momenta are not conserved
+  std::size_t looks_ = 0;
+  Energies first_;
   double first_work_ = 0;
+  Vector3 first_angular_ = Vector3::Zero();  ///< about the mass centre
+  std::optional<Seen> left_;                 ///< the last state, where it was not looked at about its mass centre
   Drifts drifts_;
 };
 
@@ -95,15 +129,16 @@ class PairedRuns {
     ranges_ = outputs_.none();
     energy_ = 0;
     track_.clear();
-    DriftWatch watch(summary_), watch_theirs(summary_);
+    DriftWatch watch(summary_, *scene_.model, used_, scene_.initial),
+        watch_theirs(summary_, *beyond_.model, *beyond_.equations, scene_.initial);
     std::vector<double> first;
     const PairedRun run = run_paired(*scene_.model, *first_, *beyond_.equations, integrator, scene_.initial, options_,
                                      [&](const State& a, const State& b) {
                                        track_.keep(a);
                                        last_ = ours.read(a);
                                        outputs_.raise(last_, theirs.read(b), greatest);
-                                       watch.look(ours.energies(), a.y.back());
-                                       watch_theirs.look(theirs.energies(), b.y.back());
+                                       watch.look(a, ours.energies(), a.y.back());
+                                       watch_theirs.look(b, theirs.energies(), b.y.back());
                                        if (first.empty()) first = last_;
                                        outputs_.raise_ranges(last_, first, ranges_);
                                        energy_ = std::max(energy_, ours.kinetic_energy());

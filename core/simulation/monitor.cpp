@@ -5,27 +5,10 @@
 #include <span>
 
 #include "withy/core/model/closing.hpp"
-#include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/measured_place.hpp"
 
 namespace withy {
 namespace {
-
-/// Whether momenta may be conserved: nothing holds the tree in the world, and it has no weight.
-bool may_float(const Model& model) {
-  bool floats = model.gravity().isZero(0);
-  if (const EventBook events(model); events.any())
-    for (const std::vector<std::size_t>& locked : events.plan().configurations)
-      for (const std::size_t hinge : locked) floats = floats && model.hinges()[hinge].parent >= 0;
-  for (std::size_t h = 0; h < model.hinges().size() && floats; ++h) {
-    if (model.hinges()[h].parent >= 0) continue;
-    const auto kernel = model.hinges()[h].hinge->kernel();
-    floats = kernel && kernel->kind == HingeKernel::Kind::free && !model.driven(h);
-  }
-  // On the rates of a free hinge acts what comes from outside the tree; what its bodies do to each other cancels there.
-  for (const LoopClosure* loop : loops_of(model)) floats = floats && loop->a().body >= 0 && loop->b().body >= 0;
-  return floats;
-}
 
 /// Why a state has no energy: one of its numbers is none, a hinge's motion is not finite there, or the greatest of its
 /// speeds, squared, is beyond all.
@@ -57,7 +40,6 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       trusted_(initial),
       efforts_(model.layout().speeds),
       work_(0),
-      floats_(attention == Attention::whole && may_float(model)),
       initial_work_(initial.y.back()),
       loops_(dynamic_cast<const ClosedLoops*>(&equations)),
       length_of_loops_(loops_ != nullptr ? length_of_loops(model) : 0),
@@ -92,7 +74,10 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   seen_.observe(initial.y);
   initial_energies_ = seen_.energies();
   initial_energy_ = initial_energies_.kinetic + initial_energies_.potential;
-  audit_momenta(initial_energies_);
+  if (attention == Attention::whole && may_float(model)) {
+    momenta_.emplace(model, equations, initial, initial_energies_);
+    momenta_->look_at_loads(initial);
+  }
   initial_sign_ = mass_matrix_sign(initial);
   look(initial);
   each_peak([this](double peak) { trusted_peaks_.push_back(peak); });
@@ -124,6 +109,7 @@ void Monitor::observe(const Stepper& stepper) {
   look(stepper.state());
   steps_ = stepper.statistics().accepted;
   if (effort_watch_) effort_watch_->observe(stepper);
+  if (momenta_) momenta_->look_at_loads(stepper.state());
 }
 
 double Monitor::kinetic(const State& state, const Energies& energies) {
@@ -188,53 +174,6 @@ void Monitor::pass_event(const State& before, const State& after) {
   look(after);
 }
 
-void Monitor::audit_momenta(const Energies& e) {
-  if (!floats_) return;
-  const auto apart = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
-    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-  };
-  linear_error_ = std::max(linear_error_, apart(e.linear_momentum, initial_energies_.linear_momentum));
-  angular_error_ = std::max(angular_error_, apart(e.angular_momentum, initial_energies_.angular_momentum));
-}
-
-void Monitor::finish_momenta() {
-  if (!floats_) return;
-  double outside = 0, all = 0;
-  for (std::size_t h = 0; h < model_.hinges().size(); ++h) {
-    const Slot& slot = model_.layout().hinges[h];
-    for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) {
-      all = std::max(all, summary_.peak_effort[i]);
-      if (model_.hinges()[h].parent < 0) outside = std::max(outside, summary_.peak_effort[i]);
-    }
-  }
-  constexpr double rounding = 1e-12;
-  MomentumDrift& m = summary_.momentum;
-  m.conserved = outside <= rounding * all;
-  if (!m.conserved) return;
-  // A tree at rest as a whole has no momenta to measure by, only what rounding and truncation make of them.
-  double mass = 0, inertia = 0;
-  for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
-    double away = 0;  // of the body
-    if (!model_.bodies()[b].frames.empty()) {
-      const WorldPose root = seen_.frame_pose(static_cast<int>(b), 0);
-      away = std::hypot(root.position[0], root.position[1], root.position[2]);
-    }
-    for (const Particle& p : model_.bodies()[b].body->shape().particles) {
-      mass += p.mass;
-      inertia += p.mass * std::pow(away + p.at.X.norm(), 2);
-    }
-  }
-  constexpr double least_share = 0.1;
-  const auto scale = [](const std::array<double, 3>& initial, double most) {
-    const double own = std::hypot(initial[0], initial[1], initial[2]);
-    return own < least_share * most ? most : own;
-  };
-  m.linear_scale = scale(initial_energies_.linear_momentum, std::sqrt(2 * mass * energy_scale_));
-  m.angular_scale = scale(initial_energies_.angular_momentum, std::sqrt(2 * inertia * energy_scale_));
-  m.linear = m.linear_scale > 0 ? linear_error_ / m.linear_scale : 0;
-  m.angular = m.angular_scale > 0 ? angular_error_ / m.angular_scale : 0;
-}
-
 /// In loops that rest under load each step leaves gaps of rounding, over which the loads work against forces of λ whose
 /// work nothing takes up: that is no motion that could be off by anything. Looked for where it may matter alone.
 void Monitor::find_rounding_energy(const State& state) {
@@ -253,7 +192,7 @@ void Monitor::audit_energy(const State& state) {
   if (own_ == nullptr) seen_y_.clear();
   see(state);
   const Energies e = seen_.energies();
-  audit_momenta(e);
+  if (momenta_) momenta_->look(state, e);
   const double kinetic_energy = kinetic(state, e);
   const double energy = kinetic_energy + potential(state, e);
   const double work = state.y.back() - initial_work_;
@@ -314,8 +253,7 @@ void Monitor::remember(Memory& memory) {
   memory(energy_scale_);
   memory(rounding_energy_);
   memory(summary_.untruncated_drift);
-  memory(linear_error_);
-  memory(angular_error_);
+  if (momenta_) momenta_->remember(memory);
   memory(untruncated_error_);
   memory(trusted_.time);
   memory(trusted_.y);

@@ -13,6 +13,7 @@
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/effort_watch.hpp"
+#include "withy/core/simulation/momentum_watch.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/core/simulation/step_watch.hpp"
 #include "withy/core/simulation/tips.hpp"
@@ -33,6 +34,7 @@ class Monitor {
   /// Loads and motions begin here, or what they do may have jumped.
   void begin_efforts(const State& state) {
     if (effort_watch_) effort_watch_->begin_at(state);
+    if (momenta_) momenta_->look_at_loads(state);
   }
   /// Brings the observation to an output.
   void show(const State& state) {
@@ -53,7 +55,9 @@ class Monitor {
   /// The energy is that of the equations' mass matrix and of their weight (RunOptions::own_energy).
   void use_own_energy(const State& initial);
   /// To be called at the end: what the loads have done on the way decides whether momenta are conserved.
-  void finish_momenta();
+  void finish_momenta() {
+    if (momenta_) summary_.momentum = momenta_->drift();
+  }
   /// What of the greatest energy may be missing from a state that is to be trusted.
   void trust(double limit) { trust_limit_ = limit; }
   /// Trusts no state from here on.
@@ -173,13 +177,12 @@ class Monitor {
   Work work_;  ///< for the equations' own energy
   [[nodiscard]] double kinetic(const State& state, const Energies& energies);
   [[nodiscard]] double potential(const State& state, const Energies& energies);
-  void audit_momenta(const Energies& energies);
   void find_rounding_energy(const State& state);
 
   bool own_energy_ = false;
-  bool floats_;  ///< momenta are looked at, since they may be conserved
+  std::optional<MomentumWatch> momenta_;  ///< nothing where they cannot be conserved
   Energies initial_energies_;
-  double linear_error_ = 0, angular_error_ = 0, untruncated_error_ = 0;
+  double untruncated_error_ = 0;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;
   const ClosedLoops* loops_;                      ///< null: there are none

@@ -87,11 +87,13 @@ struct RunOptions {
 
 /// Greatest change of the momenta of a tree that nothing outside acts on, over the states that energy is looked at in.
 struct MomentumDrift {
-  bool conserved = false;  ///< the tree floats freely: no weight, and no load pushes or turns its free hinges
-  double linear = 0;       ///< |P(t) − P(0)| over `linear_scale`
-  double angular = 0;      ///< |L(t) − L(0)| about the world origin over `angular_scale`
-  /// |P(0)|, |L(0)|, or, where that is less than a tenth of it, what the energy could carry, |P|² ≤ 2 m T and
-  /// |L|² ≤ 2 T Σ m r²: the momenta of a tree at rest as a whole are none to measure by [kg m/s, kg m²/s].
+  /// The tree floats freely: no weight, and no load acts on it from outside. What its bodies do to each other does not.
+  bool conserved = false;
+  double linear = 0;   ///< |P(t) − P(0)| over `linear_scale`
+  double angular = 0;  ///< |L(t) − L(0)| about the mass centre c over `angular_scale`
+  /// √(2 m T), and |L(0)| or, where that is less than a tenth of it, √(2 T Σ m |r − c|²): what the kinetic energy T of
+  /// motion relative to the mass centre could carry, the greatest over the run. Neither the origin of the world nor a
+  /// velocity that all have in common is in them [kg m/s, kg m²/s].
   double linear_scale = 0, angular_scale = 0;
 };
 
