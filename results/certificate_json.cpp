@@ -93,7 +93,7 @@ Json plan_json(const Certificate& c) {
   Json above;
   if (!plan.above.empty()) above = {{"formulation", plan.above}, {"share_at_an_instant", plan.above_share}};
   return {{"list", std::move(all)},          {"accuracy", plan.accuracy},
-          {"accuracy_used", plan.use},       {"worst", plan.worst},
+          {"accuracy_used", plan.use},       {"worst", plan.worst.empty() ? Json() : Json(plan.worst)},
           {"windows", plan.windows},         {"repeated", plan.repeated},
           {"integrator", plan.integrator},   {"evaluations", std::move(evaluations)},
           {"not_compared", std::move(above)}};

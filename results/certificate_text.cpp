@@ -210,9 +210,12 @@ std::vector<std::string> plan_text(const study::Certificate& certificate) {
   for (const study::PlannedStretch& s : plan.stretches)
     lines.push_back(
         fmt::format("{} from {:.4g} to {:.4g} s", certificate.rungs[s.stretch.rung], s.stretch.start, s.stretch.end));
-  if (plan.estimate)
+  if (plan.throughout) {
+    lines.push_back(fmt::format("asked {:.3g} % of each output's own range", 100 * plan.accuracy));
+  } else if (plan.estimate) {
     lines.push_back(fmt::format("asked {:.3g} % of each output's own range; estimated {:.2g} % of that of {}",
                                 100 * plan.accuracy, 100 * plan.accuracy * plan.use, plan.worst));
+  }
   if (plan.estimate && !plan.above.empty())
     lines.push_back(
         fmt::format("that is against {0}: what {1} changes counts as it is at an instant, {2:.2g} % of the "

@@ -15,6 +15,7 @@
 #include "withy/study/coarse_track.hpp"
 #include "withy/study/correction_along.hpp"
 #include "withy/study/output_reader.hpp"
+#include "withy/study/sensitive_motion.hpp"
 
 namespace withy::study {
 namespace {
@@ -83,8 +84,6 @@ constexpr double share_of_run = 0.09;
 /// Fewer are not worth counting: a fifth of a millisecond, what it takes to read a scene many times over.
 constexpr std::size_t least_evaluations = 200;
 constexpr double least_readings = 60, most_readings = 500;
-/// Part of an output's range by which the end of a coarse run may be off that of the run.
-constexpr double another_motion = 0.3;
 /// Part of an output's range below which what two coarse runs differ by is mostly the difference of their own errors:
 /// of 600 claims on random scenes those that were more than three times the truth were all below.
 constexpr double resolved = 0.005;
@@ -97,10 +96,6 @@ constexpr double beyond_its_own = 1.5;
 /// of their scale, those steps are not good for it: a stiff stop, or mass that moves with the deformation, may throw
 /// it.
 constexpr double more_unbalanced = 2, balanced = 0.01;
-/// Where a run at any price comes to another end, tolerances so much lower tell why, for so many times the evaluations
-/// of the run: an integrator of fifth order needs 2.5 times as many for a hundredth.
-constexpr double closer = 0.01;
-constexpr std::size_t most_closer = 3;
 /// Each so many of the states that the run has kept are looked at: two readings each, of the price of an estimate.
 constexpr std::size_t look_every = 4;
 
@@ -290,14 +285,6 @@ std::optional<ErrorEstimate> of_strict(const Scene& scene, const EquationsOfMoti
   return estimate;
 }
 
-/// What is known where another run of the same equations comes to another end.
-std::string sensitive(double apart, double rtol) {
-  return fmt::format(
-      "not known: the motion is sensitive. A run of the same equations at rtol {:.0e} ends {:.2g} % of an output's "
-      "range away from this run, and two formulations part as far as any two runs do",
-      rtol, 100 * apart);
-}
-
 /// \param span time that the run took [s]: what a scene writes to its results is its own affair
 EstimateOutcome at_any_price(PairedRuns& pair, double span, const RunSummary& summary, Registry& registry) {
   PairedTolerances t = paired_tolerances(summary);
@@ -325,7 +312,7 @@ EstimateOutcome at_any_price(PairedRuns& pair, double span, const RunSummary& su
   // What steps are left for is no answer: the run at the looser tolerances stands, which ended elsewhere.
   const bool came = estimate.distances.until >= estimate.end;
   const double apart = came ? pair.apart_at_the_end() : first;
-  if (!(apart < another_motion)) return {{}, sensitive(apart, came ? t.rtol : t.rtol / closer)};
+  if (!(apart < another_motion)) return {{}, sensitive_text(apart, came ? t.rtol : t.rtol / closer)};
   return {std::move(estimate), {}};
 }
 

@@ -16,6 +16,7 @@
 #include "withy/core/simulation/integrator_call.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/study/accuracy.hpp"
+#include "withy/study/agreement.hpp"
 #include "withy/study/check_loads.hpp"
 #include "withy/study/fast_course.hpp"
 #include "withy/study/growth.hpp"
@@ -26,6 +27,7 @@
 #include "withy/study/remedy.hpp"
 #include "withy/study/rung_plan.hpp"
 #include "withy/study/sampled_growth.hpp"
+#include "withy/study/sensitive_motion.hpp"
 #include "withy/study/step_limit.hpp"
 #include "withy/study/third_order.hpp"
 
@@ -75,14 +77,6 @@ std::vector<std::string> watched_outputs(const Scene& scene) {
   return names;
 }
 
-/// What looks at a run's outputs beside who asked for it, and is taken up with its checkpoints.
-class Looking {
- public:
-  virtual ~Looking() = default;
-  virtual void look(const State& state) = 0;
-  virtual void remember(Memory& memory) = 0;
-};
-
 /// The run of some equations, which may change. \param looking may be null
 RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, const EquationsOfMotion& equations,
                          ChangingEquations* changing, const EquationsOfMotion* beyond, Looking* looking) {
@@ -119,48 +113,8 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
   return summary;
 }
 
-/// How far the run is from the coarse one that its formulations were chosen by.
-class Agreement final : public Looking {
- public:
-  Agreement(const Prepared& prepared, const ChangingEquations& equations, const RungPlan& plan)
-      : plan_(plan), equations_(equations) {
-    if (plan.readings.empty()) return;
-    outputs_.emplace(prepared.model());
-    for (const Rung& rung : prepared.rungs)
-      readers_.push_back(std::make_unique<OutputReader>(*outputs_, prepared.model(), *rung.equations));
-    apart_ = outputs_->none();
-  }
-  void look(const State& state) override {
-    for (; next_ < plan_.readings.size() && plan_.readings[next_].time <= state.time; ++next_)
-      if (plan_.readings[next_].time == state.time)
-        outputs_->raise(readers_[equations_.rung()]->read(state), plan_.readings[next_].values, apart_);
-  }
-  void remember(Memory& memory) override {
-    memory(next_);
-    memory(apart_);
-  }
-  /// Where the motion itself is another, so are its errors.
-  [[nodiscard]] std::string text() const {
-    constexpr double another = 0.3;
-    const double apart = outputs_ ? relative_error(apart_, plan_.scales) : 0;
-    if (!(apart > another)) return {};
-    return fmt::format(
-        "The coarse run that its error is estimated by is {:.2g} % of an output's range off: the motion "
-        "is sensitive, and the error is not known.",
-        100 * apart);
-  }
-
- private:
-  const RungPlan& plan_;
-  const ChangingEquations& equations_;
-  std::optional<Outputs> outputs_;
-  std::vector<std::unique_ptr<OutputReader>> readers_;
-  std::size_t next_ = 0;
-  Distances apart_;
-};
-
 /// The run of formulation `auto`, by its plan.
-RunSummary run_planned(const Prepared& prepared, const RunSettings& settings, RungPlan& plan) {
+RunSummary run_planned(const Prepared& prepared, Registry& registry, const RunSettings& settings, RungPlan& plan) {
   std::vector<Stretch> stretches;
   for (const PlannedStretch& s : plan.stretches) stretches.push_back(s.stretch);
   ChangingEquations equations(prepared.rungs, std::move(stretches));
@@ -169,7 +123,14 @@ RunSummary run_planned(const Prepared& prepared, const RunSettings& settings, Ru
   plan.run_evaluations = equations.evaluations();
   if (summary.status != RunStatus::completed) return summary;
   std::string problem = plan.problem;
-  add_sentence(problem, agreement.text());
+  if (plan.throughout) {
+    const OtherRuns others = others_of(prepared, registry, settings.control, agreement, summary, plan);
+    plan.apart = others.apart;
+    plan.sensitive = others.sensitive;
+    add_sentence(problem, plan.sensitive);
+  } else if (agreement.apart() > another_motion) {
+    add_sentence(problem, agreement.text());
+  }
   if (problem.empty()) return summary;
   summary.status = RunStatus::inaccurate;
   add_sentence(problem, summary.message);
@@ -265,13 +226,16 @@ std::string why_it_grew(const Prepared& prepared, const RunSummary& summary) {
 CertifiedRun run_by_plan(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
   CertifiedRun result;
   RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
-  result.summary = settings.control.stop() ? not_begun(prepared) : run_planned(prepared, settings, plan);
+  result.summary = settings.control.stop() ? not_begun(prepared) : run_planned(prepared, registry, settings, plan);
   add_unseen(prepared, result.summary);
   // What is inaccurate here is the choice, and nothing grows.
   if (result.summary.status != RunStatus::inaccurate) result.summary.message += why_it_grew(prepared, result.summary);
-  std::optional<ErrorEstimate> estimate = plan.estimate;
+  std::string why_not = plan.throughout ? without_difference(prepared, plan, result.summary) : "";
+  std::optional<ErrorEstimate> estimate;
+  if (!plan.throughout) estimate = plan.estimate;
   if (estimate) estimate->end = result.summary.final.time;
-  result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
+  result.certificate =
+      certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate), std::move(why_not)}, registry);
   return result;
 }
 
@@ -386,7 +350,7 @@ RunSummary simulate(const Prepared& prepared, Registry& registry, const std::fun
   };
   if (prepared.escalates()) {
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
-    return settings.control.stop() ? not_begun(prepared) : run_planned(prepared, settings, plan);
+    return settings.control.stop() ? not_begun(prepared) : run_planned(prepared, registry, settings, plan);
   }
   return run_plainly(prepared, settings, nullptr);
 } catch (const IntegratorError& e) {

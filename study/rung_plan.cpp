@@ -272,11 +272,10 @@ RungPlan plan_rungs(const Prepared& prepared, Registry& registry, double accurac
   plan.estimate = {prepared.rungs[reference.rung].name, named(outputs, planner->errors(), until), end,
                    std::accumulate(plan.evaluations.begin(), plan.evaluations.end(), std::size_t{0}),
                    thread_cpu_seconds() - began};
-  // In the highest rung throughout nothing is estimated, and the run need not agree with the reference.
-  const bool highest = plan.stretches.size() == 1 && plan.stretches.front().stretch.rung == reference.rung;
-  if (!highest)
-    for (const WindowTrack& w : reference.windows) plan.readings.push_back({w.times.back(), w.readings.back()});
+  for (const WindowTrack& w : reference.windows) plan.readings.push_back({w.times.back(), w.readings.back()});
   fill_up(plan, reference.rung, start, end);
+  plan.throughout = plan.stretches.size() == 1 && plan.stretches.front().stretch.rung == reference.rung;
+  if (plan.throughout) plan.worst.clear();
   judge(plan, reference, prepared);
   return plan;
 }

@@ -31,8 +31,10 @@ struct RungPlan {
   std::vector<PlannedStretch> stretches;  ///< adjoining, from the start to the end of the run
   double accuracy = 0;                    ///< asked, of each output's own range
   std::optional<ErrorEstimate> estimate;  ///< greatest estimated errors; nothing where none could be made
-  double use = 0;                         ///< greatest of them over what is allowed
-  std::string worst;                      ///< output of which that is so
+  /// All of the run is in the rung that errors are estimated against: there is no difference to estimate.
+  bool throughout = false;
+  double use = 0;     ///< greatest of the errors over what is allowed
+  std::string worst;  ///< output of which that is so; empty where there is no difference
   /// A rung above the one that errors are estimated against, that was not run since what it adds is small at an
   /// instant: its name, empty where there is none; and that, of the range of deflections (third_order_share). It is in
   /// `use` as it is there; over a run it may come to hundreds of times that, and how much is not known.
@@ -45,7 +47,11 @@ struct RungPlan {
   std::vector<std::size_t> run_evaluations;  ///< of the run itself, in each rung, those of its watches among them
   std::size_t windows = 0, repeated = 0;     ///< of time; tries of a window that were not kept
   std::vector<PlannedReading> readings;      ///< at the ends of windows
-  Distances scales;                          ///< that errors are relative to
+  /// Of a run that is in one rung throughout, once it is made: the greatest part of an output's range that another run
+  /// in it is off, and why its error is not known (OtherRuns).
+  double apart = 0;
+  std::string sensitive;
+  Distances scales;  ///< that errors are relative to
 };
 
 /// Plans the run of a scene in formulation `auto`. The same scene gives the same plan, bit by bit.

@@ -15,7 +15,7 @@ json run_json(const Folder& folder) { return json::parse(folder.read("out/run.js
 
 TEST(Auto, TellsItsFormulationsOverTimeAndTheErrorTheyMake) {
   const Folder folder;
-  const Finished f = withy(folder, {"run", "scenes/driven-arm.yaml", "--formulation", "auto", "--out", "out"});
+  const Finished f = withy(folder, {"run", "scenes/beam-on-base.yaml", "--formulation", "auto", "--out", "out"});
   ASSERT_EQ(f.status, 0) << f.err;
   EXPECT_THAT(f.out, HasSubstr("asked 1 % of each output's own range; estimated "));
   EXPECT_THAT(f.out, HasSubstr("error                   against "));
