@@ -245,7 +245,8 @@ void Equations::normalize(std::span<double> y) {
   Parts::expect(y.size(), p.size, "y");
   std::copy(y.begin(), y.end(), p.full.begin());
   if (const auto* loops = dynamic_cast<const ClosedLoops*>(&p.equations)) {
-    loops->close(p.full, p.work);
+    if (const Closing closing = loops->close(p.full, p.work); !closing.closed)
+      throw std::invalid_argument("y: no state near by closes the loops of the scene");
   } else {
     p.equations.normalize(p.full);
   }

@@ -59,7 +59,8 @@ class Equations {
   /// unit sphere, but for its own rate, which is linear in all four of its components. \throws SimulationStopped where
   /// f is not to be had there; study::InputError where the formulation has no derivatives.
   void jacobian(double t, std::span<const double> y, std::span<double> jacobian);
-  /// Scales quaternions in y back to unit length.
+  /// Scales quaternions in y back to unit length, and closes loops. \throws std::invalid_argument where these have no
+  /// closed state near by.
   void normalize(std::span<double> y);
   /// Why an evaluation was not ok, in a sentence.
   [[nodiscard]] std::string reason(double t, const Evaluation& evaluation) const;

@@ -55,13 +55,13 @@ struct Simulation::Parts {
     }
   }
 
-  /// \returns whether t is reached
+  /// \returns whether no event has halted it
   bool advance(double t, bool halt) {
     row_is_now = false;
     const SessionEnd end = go(t, halt);
     events.clear();
     for (const EventTime& e : session.events()) events.push_back({e.name, e.time, e.direction});
-    if (end.status == RunStatus::completed) return end.reached;
+    if (end.status == RunStatus::completed) return !end.halted;
     refuse(end);
   }
 

@@ -76,7 +76,7 @@ class Simulation {
   /// integrator's plugin fails, after which nothing can be trusted.
   void step(double t);
   /// The same, but halts where an event that stops a run comes first; at one that does nothing else each time it
-  /// happens. \returns whether t is reached
+  /// happens. \returns whether none did: false also of one at t itself
   bool advance_to(double t);
   /// The events of the last step, in their order.
   [[nodiscard]] const std::vector<Event>& events() const;

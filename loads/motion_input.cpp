@@ -15,7 +15,8 @@ namespace {
 enum class Sets { position, rate, acceleration };
 
 /// From t0, where the coordinate is at x0 with the rate v0, to t1 the acceleration goes in a straight line from a0 to
-/// a1. After t1 it is zero, of accelerations that are set a1. Until the host sets something the coordinate rests.
+/// a1. After t1 it is zero, of accelerations that are set a1. Until the host sets something the rate is that of the
+/// beginning.
 class BoundMotionInput final : public EffortlessLoad, public DiscretePart, public InputPort, public HostedMotion {
  public:
   BoundMotionInput(Sets sets, bool linear, std::size_t position, std::size_t speed, bool angular)
@@ -74,11 +75,12 @@ class BoundMotionInput final : public EffortlessLoad, public DiscretePart, publi
   }
 
   std::size_t states() const override { return count_; }
-  void renew(double t, std::span<const double> positions, std::span<const double> /*speeds*/,
-             const Crossing& /*crossing*/, std::span<double> d, std::span<double> /*scratch*/) const noexcept override {
+  void renew(double t, std::span<const double> positions, std::span<const double> speeds, const Crossing& /*crossing*/,
+             std::span<double> d, std::span<double> /*scratch*/) const noexcept override {
     if (is_set(d)) return;
     d[begins_] = d[ends_] = t;
     d[x0_] = positions[position_];
+    d[v0_] = speeds[speed_];
   }
   void add(double /*t*/, std::span<const double> /*discrete*/, std::span<double> /*efforts*/) const noexcept override {}
 
@@ -146,7 +148,7 @@ std::unique_ptr<Motion> make_motion_input(const Value& p, const MakeContext& con
 void enroll_motion_input(Enrollment& enrollment) {
   enrollment.add<Motion>(
       {.id = "input",
-       .summary = "Position, rate or acceleration that a host sets between steps; at rest until then",
+       .summary = "Position, rate or acceleration that a host sets between steps; until then the rate stays",
        .parameters =
            {text("sets", "what the host sets").one_of({"position", "rate", "acceleration"}).otherwise("position"),
             text("hold", "of accelerations: one holds, which is the default, or a straight line leads to it")

@@ -147,7 +147,9 @@ void add_reasons(Lines& lines, const AdviceReport& report) {
   const auto own = [&](const study::Point& t) {
     return t.formulation == choice.formulation && t.family == choice.family;
   };
-  add("fewer modes", [&](const study::Point& t) { return own(t) && t.modes < choice.modes; });
+  // Of any family: another may do with fewer.
+  add("fewer modes",
+      [&](const study::Point& t) { return t.formulation == choice.formulation && t.modes < choice.modes; });
   for (const std::string& i : report.candidates.integrators)
     if (i != choice.integrator)
       add(i, [&](const study::Point& t) { return own(t) && t.modes == choice.modes && t.integrator == i; });

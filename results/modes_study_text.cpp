@@ -9,8 +9,11 @@ namespace {
 
 std::string run_of_modes_text(const study::ModesOf& run, const std::optional<study::AgainstNext>& against,
                               const study::Sweep& sweep, std::size_t count, bool poles) {
+  const bool none = run.points.front().modes.empty();
+  if (none && sweep.none())
+    return "\nNothing is free to move: hinges that can move have motions, and no body deforms.\n";
   std::string text;
-  if (!run.points.front().modes.empty() || !sweep.none())
+  if (!none || !sweep.none())
     text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep, count));
   if (const std::string words = study::against_next_text(
           against, !against || against->compared == 1 ? "the lowest frequency"
@@ -29,7 +32,7 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
   if (spoken_of.turn) {
     if (const std::string words = study::turn_text(*spoken_of.turn); !words.empty()) text += '\n' + words + '\n';
   }
-  if (poles && !run.points.front().modes.empty()) text += '\n' + poles_text(run.points.front());
+  if (poles && !none) text += '\n' + poles_text(run.points.front());
   for (const study::ModesAt& at : run.points) {
     if (study::stands_still(at, sweep))
       text += fmt::format("\nAt {} = {} nothing turns: the frequencies there are those of the table above.\n",

@@ -285,17 +285,34 @@ std::optional<ErrorEstimate> of_strict(const Scene& scene, const EquationsOfMoti
   return estimate;
 }
 
+/// Evaluations of a pair at any price for one of the run where steps are implicit: derivatives of both are found by
+/// differences there, of which the integrator of the run may need none.
+constexpr std::size_t most_implicit = 30;
+
+/// An estimate that was made after another one which did not do.
+ErrorEstimate with_costs_of(const ErrorEstimate& before, ErrorEstimate estimate) {
+  estimate.evaluations += before.evaluations;
+  estimate.cpu_seconds += before.cpu_seconds;
+  return estimate;
+}
+
 /// \param span time that the run took [s]: what a scene writes to its results is its own affair
 EstimateOutcome at_any_price(PairedRuns& pair, double span, const RunSummary& summary, Registry& registry) {
   PairedTolerances t = paired_tolerances(summary);
   pair.options().at_steps = true;
   pair.options().output = span / most_readings;
   pair.options().most_evaluations = summary.steps.evaluations;
+  const char* steps = "dopri5";
   const auto compared = [&] {
-    return pair.with(
-        *make_integrator(registry, "dopri5", Value::map({{"rtol", Value(t.rtol)}, {"atol", Value(t.atol)}})));
+    return pair.with(*make_integrator(registry, steps, Value::map({{"rtol", Value(t.rtol)}, {"atol", Value(t.atol)}})));
   };
   ErrorEstimate estimate = compared();
+  if (summary.status == RunStatus::completed && estimate.distances.until < estimate.end) {
+    // What is stiff for it need not be for the integrator of the run.
+    steps = "radau";
+    pair.options().most_evaluations = most_implicit * summary.steps.evaluations;
+    estimate = with_costs_of(estimate, compared());
+  }
   if (summary.status != RunStatus::completed && estimate.distances.until < estimate.end)
     return {{},
             "not estimated: the motion of this run breaks down at its end, and coarse runs break down before it, at "
@@ -304,11 +321,8 @@ EstimateOutcome at_any_price(PairedRuns& pair, double span, const RunSummary& su
   if (estimate.distances.until < estimate.end || first < another_motion) return {std::move(estimate), {}};
   // What a motion does that is only long comes nearer by as much as the tolerances go down; a sensitive one does not.
   t.rtol *= closer, t.atol *= closer;
-  pair.options().most_evaluations = most_closer * summary.steps.evaluations;
-  const ErrorEstimate before = std::move(estimate);
-  estimate = compared();
-  estimate.evaluations += before.evaluations;
-  estimate.cpu_seconds += before.cpu_seconds;
+  pair.options().most_evaluations *= most_closer;
+  estimate = with_costs_of(estimate, compared());
   // What steps are left for is no answer: the run at the looser tolerances stands, which ended elsewhere.
   const bool came = estimate.distances.until >= estimate.end;
   const double apart = came ? pair.apart_at_the_end() : first;
@@ -316,14 +330,10 @@ EstimateOutcome at_any_price(PairedRuns& pair, double span, const RunSummary& su
   return {std::move(estimate), {}};
 }
 
-}  // namespace
-
-EstimateOutcome estimate_error(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond,
-                               const RunSummary& summary, Registry& registry, Price price,
-                               const std::function<bool()>& interrupted) {
-  PairedRuns pair(scene, used, beyond, summary, interrupted);
+/// By what a tenth of the cost of the run pays for.
+EstimateOutcome affordable(PairedRuns& pair, const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond,
+                           const RunSummary& summary, Registry& registry, const std::function<bool()>& interrupted) {
   const double span = summary.final.time - scene.initial.time;
-  if (price == Price::any) return at_any_price(pair, span, summary, registry);
   const double paid = share_of_run * static_cast<double>(summary.steps.evaluations) / cost_of_a_pair(*scene.model);
   const auto allowed = std::max(static_cast<std::size_t>(paid), least_evaluations);
   PairedRunOptions& options = pair.options();
@@ -347,6 +357,25 @@ EstimateOutcome estimate_error(const Scene& scene, const EquationsOfMotion& used
           "not estimated: what a tenth of the cost of this run pays for does not follow its motion; `--estimate "
           "always` compares with " +
               beyond.formulation + " at any cost"};
+}
+
+}  // namespace
+
+EstimateOutcome estimate_error(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond,
+                               const RunSummary& summary, Registry& registry, Price price,
+                               const std::function<bool()>& interrupted) {
+  PairedRuns pair(scene, used, beyond, summary, interrupted);
+  EstimateOutcome found;
+  if (price == Price::any) {
+    found = at_any_price(pair, summary.final.time - scene.initial.time, summary, registry);
+    if (!found.estimate || found.estimate->distances.until >= found.estimate->end || (interrupted && interrupted()))
+      return found;
+  }
+  EstimateOutcome other = affordable(pair, scene, used, beyond, summary, registry, interrupted);
+  if (!found.estimate) return other;
+  // It has come to a part of the run alone.
+  if (other.estimate) return {with_costs_of(*found.estimate, std::move(*other.estimate)), {}};
+  return found;
 }
 
 }  // namespace withy::study

@@ -112,7 +112,7 @@ WITHY_API withy_status withy_simulation_output_values(withy_simulation* simulati
     step gives the same until it is restored. */
 WITHY_API withy_status withy_simulation_step(withy_simulation* simulation, double t);
 /** The same, but halts at an event with `stop: true`, each time at one that does nothing else.
-    \param reached whether t is; may be null */
+    \param reached 1 where t is; 0 where such an event halted it, before t or at t itself; may be null */
 WITHY_API withy_status withy_simulation_advance_to(withy_simulation* simulation, double t, int* reached);
 /** The present state as JSON; null with an error where that cannot be had. */
 WITHY_API const char* withy_simulation_state(withy_simulation* simulation);
@@ -136,7 +136,7 @@ WITHY_API withy_status withy_equations_derivatives(withy_equations* equations, d
 /** The derivatives of y' with respect to y, row after row: count * count numbers. */
 WITHY_API withy_status withy_equations_jacobian(withy_equations* equations, double t, const double* y, size_t count,
                                                 double* jacobian);
-/** Scales quaternions in y to unit length. */
+/** Scales quaternions in y to unit length, and closes loops. */
 WITHY_API withy_status withy_equations_normalize(withy_equations* equations, double* y, size_t count);
 
 #ifdef __cplusplus

@@ -5,16 +5,15 @@
 #include <set>
 
 #include "withy/bindings/fmi/documentation.hpp"
+#include "withy/bindings/fmi/model_exchange.hpp"
 #include "withy/bindings/fmi/resources.hpp"
 #include "withy/bindings/fmi/zip_file.hpp"
-#include "withy/core/model/hosted_motion.hpp"
 #include "withy/plugins/host/plugin_host.hpp"
 #include "withy/results/output_name.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/sha256.hpp"
 #include "withy/scene/visual.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/refusals.hpp"
 
 namespace withy::fmi {
 namespace {
@@ -96,25 +95,12 @@ void add_library(ZipFile& zip, const Description& d) {
     zip.add("documentation/licenses/" + entry.path().filename().string(), read_bytes(entry.path().string()));
 }
 
-/// Inputs of model exchange act at once, or continuously.
-void refuse_reached_motions(const study::Prepared& prepared) {
-  for (const LoadNode& load : prepared.model().loads()) {
-    const HostedMotion* motion = hosted_motion(*load.load);
-    if (motion == nullptr || motion->jumps()) continue;
-    throw study::InputError(prepared.scene.file + ": /motions/" + load.name +
-                            ": a host of model exchange cannot prescribe a position or a rate; need 'sets: "
-                            "acceleration', or --kind cs");
-  }
-}
-
 }  // namespace
 
 Exported export_fmu(const study::Prepared& prepared, const SceneOptions& options, Registry& registry,
                     const Export& what) {
   check_plugins(prepared);
-  if (what.model_exchange)
-    study::refuse_loops(prepared, "the solver of a host of model exchange (--kind cs exports the scene with its own)");
-  if (what.model_exchange) refuse_reached_motions(prepared);
+  if (what.model_exchange) refuse_model_exchange(prepared);
   Exported made{{what.version, what.model_exchange, what.co_simulation, identifier_of(what.out), {}},
                 variables_of(prepared, registry)};
   made.description.token = token_of(prepared, made.variables);

@@ -258,7 +258,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real length, fmi2Boole
   return status(guarded(c, "fmi2DoStep", {static_cast<unsigned>(Mode::step), In::co_simulation}, [&](Instance& i) {
     StepEnd& last = static_cast<Component&>(i).last;
     last = i.step(from, length, {});
-    if (last.reached) return Status::ok;
+    if (last.reached && !last.terminate) return Status::ok;
     i.say(Status::discard, log_discards, "fmi2DoStep: " + last.reason);
     return Status::discard;
   }));

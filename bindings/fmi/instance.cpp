@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "withy/bindings/fmi/model_exchange.hpp"
 #include "withy/bindings/fmi/resources.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/integrator_call.hpp"
@@ -44,6 +45,7 @@ Instance::Instance(Kind kind, std::string name, std::string_view token, const st
   if (token != token_)
     throw std::runtime_error("the model description is of another FMU: its token is '" + std::string(token) +
                              "'; that of these resources is '" + token_ + "'");
+  if (kind_ == Kind::model_exchange) refuse_model_exchange(*prepared);
   dynamics_ = std::make_unique<Dynamics>(prepared, prepared->scene.initial.time);
   reset();
   stale_ = false;
@@ -278,7 +280,7 @@ StepEnd Instance::step(double from, double length, const BetweenSteps& between) 
   StepEnd result;
   result.reached = session_->state().time == target;
   result.early = early_.has_value() && !result.reached;
-  if (end.status == RunStatus::completed && !end.reached && !result.early) {
+  if (end.halted) {
     result.terminate = true;
     result.reason = "event '" + (session_->events().empty() ? std::string() : session_->events().back().name) +
                     "' ends the simulation at t = " + brief(session_->state().time) + " s";

@@ -1,6 +1,9 @@
 /// \file
 /// Where an instance begins by the start values that were set.
 #include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
 
 #include "withy/bindings/fmi/instance.hpp"
 #include "withy/core/model/closing.hpp"
@@ -25,14 +28,32 @@ GivenState set_by_host(const Layout& layout, const std::vector<char>& is_set) {
   return given;
 }
 
+/// What is wrong with a quaternion that has no direction, as of a host that begins with zeros; else empty. \param y as
+/// State::y
+std::string without_direction(const Model& model, std::span<const double> y) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const auto kernel = model.hinges()[h].hinge->kernel();
+    if (!kernel || (kernel->kind != HingeKernel::Kind::spherical && kernel->kind != HingeKernel::Kind::free)) continue;
+    const auto q = y.subspan(model.layout().hinges[h].position, 4);
+    const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    if (std::isnormal(norm)) continue;
+    const std::string& name = model.hinges()[h].name;
+    return "hinge '" + name + "': got " + name + ".qw, qx, qy, qz = " + brief(q[0]) + ", " + brief(q[1]) + ", " +
+           brief(q[2]) + ", " + brief(q[3]) + "; need a quaternion that is not zero";
+  }
+  return {};
+}
+
 }  // namespace
 
 /// Begins the states of loads at what was set; before that closes loops that start values, or motions at another start
 /// time, have opened. What was set stays, and what the scene gives stays as long as the rest can close the loops. It
-/// goes from where the scene begins, whatever was closed before. \returns why the loops cannot be closed; else empty
+/// goes from where the scene begins, whatever was closed before. \returns why that cannot be, or why a quaternion turns
+/// nothing; else empty
 std::string Instance::settle_start() {
   Dynamics& d = dynamics();
   if (!open_) return {};
+  if (std::string fault = without_direction(d.model(), d.state().y); !fault.empty()) return fault;
   const Model& model = d.model();
   const std::vector<const LoopClosure*> loops = loops_of(model);
   const bool moved = std::find(is_started_.begin(), is_started_.end(), 1) != is_started_.end() ||

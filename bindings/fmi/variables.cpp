@@ -147,8 +147,8 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry) {
   for (const Variable& variable : v.all)
     if (!names.insert(variable.name).second)
       throw study::InputError(
-          fmt::format("{}: two variables of the FMU would be called '{}': give the load or output another name", file,
-                      variable.name));
+          fmt::format("{}: two variables of the FMU would be called '{}': give the load, motion or output another name",
+                      file, variable.name));
   return v;
 }
 

@@ -213,8 +213,9 @@ void bind_equations(py::module_& m) {
            "sphere, but for its own rate, which is linear in all four of its components.\n\nRaises:\n    "
            "SimulationStopped, ValueError: as derivatives() does.")
       .def("normalize", &E::normalized, py::arg("y"),
-           "normalize(y) -> numpy.ndarray\n\ny [n] with its quaternions scaled to unit length, a copy.\n\nRaises:\n"
-           "    ValueError: where y has another shape.")
+           "normalize(y) -> numpy.ndarray\n\ny [n] with its quaternions scaled to unit length and its loops closed, a "
+           "copy.\n\n"
+           "Raises:\n    ValueError: where y has another shape, or no state near by closes the loops.")
       .def_property_readonly(
           "names", [](const E& e) { return names_of(e.equations.states()); },
           "Names of the numbers of y, as those of the result columns.")
@@ -261,7 +262,8 @@ void bind_simulation(py::module_& m) {
           "advance_to", [](S& s, double t) { return s.call([t](Simulation& own) { return own.advance_to(t); }); },
           py::arg("t"),
           "advance_to(t) -> bool\n\nAs step(), but halts at an event with `stop: true` that comes first. Returns "
-          "whether t [s] is reached.\n\nRaises:\n    SimulationStopped, ValueError: as step() does.")
+          "whether t [s] is reached: False also where such an event is at t itself.\n\nRaises:\n    SimulationStopped, "
+          "ValueError: as step() does.")
       .def(
           "snapshot", [](S& s) { return s.call([](Simulation& own) { return own.snapshot(); }); },
           "snapshot() -> Snapshot\n\nWhat restore() goes back to.\n\nRaises:\n    SimulationStopped: as step() did, "

@@ -129,7 +129,8 @@ class Model {
   [[nodiscard]] std::size_t load_scratch() const { return load_scratch_; }
   /// The state at time 0 with every coordinate at its reference, at rest, continuous states as they begin there.
   [[nodiscard]] State reference_state() const;
-  /// Puts driven hinges where their motions have them at the state's time; locked ones stay, at rest.
+  /// Puts driven hinges where their motions have them at the state's time; locked ones stay, at rest, and those that a
+  /// host moves as they are.
   void prescribe(State& state) const;
   /// Sets the accelerations of the driven speeds at time t [s] in u_dot, one a speed; leaves the others.
   void prescribe_accelerations(double t, std::span<double> u_dot) const noexcept;

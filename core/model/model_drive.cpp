@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/kinks.hpp"
@@ -76,6 +77,7 @@ bool Model::driven(std::size_t hinge) const { return driven_[hinge]; }
 
 void Model::prescribe(State& state) const {
   for (const MotionNode& node : motions_) {
+    if (dynamic_cast<const MotionByLoad*>(node.motion.get()) != nullptr) continue;  // it goes on as the state has it
     const Slot& slot = layout_.hinges[static_cast<std::size_t>(node.hinge)];
     double* rates = state.y.data() + layout_.positions + slot.speed;
     std::fill(rates, rates + slot.speeds, 0.0);

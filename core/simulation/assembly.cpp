@@ -67,20 +67,23 @@ class Assembler {
   [[nodiscard]] const std::optional<std::size_t>& turned_over() const { return turned_over_; }
 
   /// Moves the coordinates of free speeds; where they do not close the loops, the state stays. Where the equations lead
-  /// to a pose that is none of the hinge's, or nowhere, the turns that are left are followed first.
+  /// to a pose that is none of the hinge's, or nowhere, the turns that are left are followed first; then only what
+  /// comes nearer is.
   bool close_positions(const Free& free) {
     if (is_closed_well(closed_gap)) return true;
     if (free.empty()) return false;
     const State start = state_;
-    for (const bool by_turns : {false, true}) {
-      if (by_turns) {
-        if (!holds_directions_) break;
+    enum class Way { straight, by_turns, downhill };
+    for (const Way way : {Way::straight, Way::by_turns, Way::downhill}) {
+      if (way == Way::by_turns) {
+        if (!holds_directions_) continue;
         turns_ = true;
         look();
         follow(free);
         turns_ = false;
         look();
       }
+      if (way == Way::downhill) descend(free);
       follow(free);
       if (is_closed_well(good_gap)) return true;
       state_ = start;
@@ -135,6 +138,27 @@ class Assembler {
         ++idle;
     }
   }
+  /// The method of Levenberg and Marquardt: where Newton's goes to and fro beside a state in which J loses rank, it
+  /// goes past.
+  void descend(const Free& free) {
+    constexpr int most = 200;
+    constexpr double least_damping = 1e-12, most_damping = 1e8;
+    double damping = 1e-2;
+    for (int i = 0; i < most && gap() > closed_gap * length_ && damping < most_damping; ++i) {
+      const State here = state_;
+      const double before = gaps_.squaredNorm();
+      const Eigen::VectorXd change = smallest(free, gaps_, damping);
+      if (!change.allFinite()) break;
+      move(part_of(change) * change);
+      if (gaps_.squaredNorm() < before) {
+        damping = std::max(damping / 5, least_damping);
+      } else {
+        state_ = here;
+        look();
+        damping *= 4;
+      }
+    }
+  }
   /// The part of a change that is taken at once, in which nothing moves by more than a third of the loops' size: a turn
   /// by 0.3 rad. What slides may come from farther away.
   [[nodiscard]] double part_of(const Eigen::VectorXd& change) const {
@@ -155,17 +179,25 @@ class Assembler {
     loops_.see(state_.y, gaps, {rates_.data(), static_cast<std::size_t>(rates_.size())}, J, work_);
   }
   /// The change of free speeds with J change = −missing, or as near as they come to it, that is the smallest in M.
-  [[nodiscard]] Eigen::VectorXd smallest(const Free& free, const Eigen::VectorXd& missing) const {
+  /// \param damping of what it changes, over the mean square of J in M: then it is smaller, and leaves some
+  [[nodiscard]] Eigen::VectorXd smallest(const Free& free, const Eigen::VectorXd& missing, double damping = 0) const {
     const DenseSystem system = equations_.system(state_.time, state_.y);
     const auto n = static_cast<Eigen::Index>(system.size);
     const Eigen::MatrixXd M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n)(free, free);
     const Eigen::LLT<Eigen::MatrixXd> factor(M);
     const Eigen::MatrixXd S = factor.matrixL().solve(J_(Eigen::all, free).transpose()).transpose();
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(1e-9);
-    solver.compute(S);
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
-    const Eigen::VectorXd wanted = -missing, least = solver.solve(wanted);
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(n), least;
+    const Eigen::VectorXd wanted = -missing;
+    if (damping > 0) {
+      Eigen::MatrixXd A = S * S.transpose();
+      A.diagonal().array() += damping * A.trace() / static_cast<double>(A.rows());
+      least = S.transpose() * A.llt().solve(wanted);
+    } else {
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+      solver.setThreshold(1e-9);
+      solver.compute(S);
+      least = solver.solve(wanted);
+    }
     change(free) = factor.matrixU().solve(least).eval();
     return change;
   }

@@ -25,18 +25,20 @@ bool may_float(const Model& model) {
   return floats;
 }
 
-OutsideLoads::OutsideLoads(const Model& model, const EquationsOfMotion& equations)
+OutsideLoads::OutsideLoads(const Model& model)
     : model_(model), scratch_(model.load_scratch()), efforts_(model.layout().speeds) {
   std::size_t most = 0;
   for (const LoadNode& node : model.loads()) most = std::max(most, node.load->frames().size());
-  if (most == 0) return;
-  seen_ = equations.make_observation();
   motions_.resize(most);
   wrenches_.resize(most);
 }
 
-bool OutsideLoads::act(double t, std::span<const double> y) {
-  return !model_.loads().empty() && (on_roots(t, y) || by_wrenches(t, y));
+bool OutsideLoads::act(double t, std::span<const double> y, const Observation& seen) {
+  if (model_.loads().empty()) return false;
+  return on_roots(t, y) || std::any_of(model_.loads().begin(), model_.loads().end(), [&](const LoadNode& node) {
+           // A field acts on all mass, from outside.
+           return acts_on_mass(node) ? acting_field(node, y) != nullptr : by_wrenches_of(node, t, y, seen);
+         });
 }
 
 bool OutsideLoads::on_roots(double t, std::span<const double> y) {
@@ -55,23 +57,14 @@ bool OutsideLoads::on_roots(double t, std::span<const double> y) {
   return false;
 }
 
-bool OutsideLoads::by_wrenches(double t, std::span<const double> y) {
-  if (seen_ == nullptr) return false;
-  seen_->observe(y);
-  return std::any_of(model_.loads().begin(), model_.loads().end(), [&](const LoadNode& node) {
-    // A field acts on all mass, from outside.
-    return acts_on_mass(node) ? acting_field(node, y) != nullptr : by_wrenches_of(node, t, y);
-  });
-}
-
-bool OutsideLoads::by_wrenches_of(const LoadNode& node, double t, std::span<const double> y) {
+bool OutsideLoads::by_wrenches_of(const LoadNode& node, double t, std::span<const double> y, const Observation& seen) {
   constexpr double rounding = 1e-9;  // of what cancels
   const std::span<const FrameIndex> frames = node.load->frames();
   const auto motions = std::span(motions_).first(frames.size());
   const auto wrenches = std::span(wrenches_).first(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const WorldPose pose = seen_->frame_pose(frames[i].body, frames[i].frame);
-    const WorldVelocity velocity = seen_->frame_velocity(frames[i].body, frames[i].frame);
+    const WorldPose pose = seen.frame_pose(frames[i].body, frames[i].frame);
+    const WorldVelocity velocity = seen.frame_velocity(frames[i].body, frames[i].frame);
     for (Eigen::Index r = 0; r < 3; ++r)
       for (Eigen::Index c = 0; c < 3; ++c) motions[i].R(r, c) = pose.rotation.at(static_cast<std::size_t>(3 * r + c));
     motions[i].position = vector(pose.position);
@@ -93,22 +86,23 @@ bool OutsideLoads::by_wrenches_of(const LoadNode& node, double t, std::span<cons
 
 MomentumWatch::MomentumWatch(const Model& model, const EquationsOfMotion& equations, const State& initial,
                              const Energies& e)
-    : outside_(model, equations),
+    : outside_(model),
       centre_(model, equations, initial.y),
       linear_(vector(e.linear_momentum)),
-      angular_(spin(e, centre_.at(initial.y).position)) {
-  look(initial, e);
-}
+      angular_(spin(e, centre_.at(initial.y).position)) {}
 
-void MomentumWatch::look_at_loads(const State& state) {
-  if (!pushed_) pushed_ = outside_.act(state.time, state.y);
-}
-
-void MomentumWatch::look(const State& state, const Energies& e) {
+void MomentumWatch::look(const State& state, const Energies& e, const Observation& seen) {
+  look_at_loads(state, seen);
   if (pushed_) return;
+  // The mass centre costs as much as three energies.
+  constexpr std::size_t every = 8;
+  linear_error_ = std::max(linear_error_, (vector(e.linear_momentum) - linear_).norm());
+  if (looks_++ % every == 0) look_about_centre(state, e);
+}
+
+void MomentumWatch::look_about_centre(const State& state, const Energies& e) {
   const MassCentre::Place centre = centre_.at(state.y);
   const Vector3 linear = vector(e.linear_momentum);
-  linear_error_ = std::max(linear_error_, (linear - linear_).norm());
   angular_error_ = std::max(angular_error_, (spin(e, centre.position) - angular_).norm());
   // Of a body that flies without turning, what rounding leaves of the energy is no motion relative to its centre.
   constexpr double rounding = 1e-12;
@@ -135,6 +129,7 @@ MomentumDrift MomentumWatch::drift() const {
 
 void MomentumWatch::remember(Memory& memory) {
   memory(pushed_);
+  memory(looks_);
   memory(linear_error_);
   memory(angular_error_);
   memory(relative_);

@@ -76,7 +76,7 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   initial_energy_ = initial_energies_.kinetic + initial_energies_.potential;
   if (attention == Attention::whole && may_float(model)) {
     momenta_.emplace(model, equations, initial, initial_energies_);
-    momenta_->look_at_loads(initial);
+    momenta_->look(initial, initial_energies_, seen_);
   }
   initial_sign_ = mass_matrix_sign(initial);
   look(initial);
@@ -109,7 +109,6 @@ void Monitor::observe(const Stepper& stepper) {
   look(stepper.state());
   steps_ = stepper.statistics().accepted;
   if (effort_watch_) effort_watch_->observe(stepper);
-  if (momenta_) momenta_->look_at_loads(stepper.state());
 }
 
 double Monitor::kinetic(const State& state, const Energies& energies) {
@@ -174,6 +173,19 @@ void Monitor::pass_event(const State& before, const State& after) {
   look(after);
 }
 
+void Monitor::look_at_loads(const State& state) {
+  if (own_ == nullptr) seen_y_.clear();
+  see(state);
+  momenta_->look_at_loads(state, seen_);
+}
+
+void Monitor::finish(const State& state) {
+  audit_energy(state);
+  if (!momenta_) return;
+  momenta_->finish(state, seen_.energies());
+  summary_.momentum = momenta_->drift();
+}
+
 /// In loops that rest under load each step leaves gaps of rounding, over which the loads work against forces of λ whose
 /// work nothing takes up: that is no motion that could be off by anything. Looked for where it may matter alone.
 void Monitor::find_rounding_energy(const State& state) {
@@ -192,7 +204,7 @@ void Monitor::audit_energy(const State& state) {
   if (own_ == nullptr) seen_y_.clear();
   see(state);
   const Energies e = seen_.energies();
-  if (momenta_) momenta_->look(state, e);
+  if (momenta_) momenta_->look(state, e, seen_);
   const double kinetic_energy = kinetic(state, e);
   const double energy = kinetic_energy + potential(state, e);
   const double work = state.y.back() - initial_work_;

@@ -34,7 +34,7 @@ class Monitor {
   /// Loads and motions begin here, or what they do may have jumped.
   void begin_efforts(const State& state) {
     if (effort_watch_) effort_watch_->begin_at(state);
-    if (momenta_) momenta_->look_at_loads(state);
+    if (momenta_) look_at_loads(state);
   }
   /// Brings the observation to an output.
   void show(const State& state) {
@@ -54,10 +54,9 @@ class Monitor {
   void pass_event(const State& before, const State& after);
   /// The energy is that of the equations' mass matrix and of their weight (RunOptions::own_energy).
   void use_own_energy(const State& initial);
-  /// To be called at the end: what the loads have done on the way decides whether momenta are conserved.
-  void finish_momenta() {
-    if (momenta_) summary_.momentum = momenta_->drift();
-  }
+  /// To be called at the end, in place of audit_energy: what the loads have done on the way decides whether momenta are
+  /// conserved.
+  void finish(const State& state);
   /// What of the greatest energy may be missing from a state that is to be trusted.
   void trust(double limit) { trust_limit_ = limit; }
   /// Trusts no state from here on.
@@ -177,6 +176,7 @@ class Monitor {
   Work work_;  ///< for the equations' own energy
   [[nodiscard]] double kinetic(const State& state, const Energies& energies);
   [[nodiscard]] double potential(const State& state, const Energies& energies);
+  void look_at_loads(const State& state);
   void find_rounding_energy(const State& state);
 
   bool own_energy_ = false;

@@ -112,7 +112,8 @@ SessionEnd Session::advance(double t, bool halt) {
     for (const Setting& s : settings_)
       if (s.reached > state().time) next = std::min(next, s.reached);
     SessionEnd end = go(next);
-    if (!end.reached || next == t) return end;
+    if (end.halted) end.reached = state().time == t;  // it may have been the end of a line alone
+    if (!end.reached || end.halted || next == t) return end;
     end_lines();
     loop_.replace(with_inputs_);
   }
@@ -125,7 +126,7 @@ SessionEnd Session::go(double t) {
     const SteppingEnd end = loop_.run(*this);
     if (end.cause == SteppingEnd::Cause::reached) return {RunStatus::completed, {}, true};
     if (end.cause == SteppingEnd::Cause::event) {
-      if (halts_) return {RunStatus::completed, {}, state().time == t};
+      if (halts_) return {RunStatus::completed, {}, state().time == t, true};
       continue;
     }
     if (end.cause != SteppingEnd::Cause::stopped) stop_ = stop_of(end, model_, equations_, state(), stepper());

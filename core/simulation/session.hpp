@@ -29,6 +29,7 @@ struct SessionEnd {
   RunStatus status = RunStatus::completed;
   std::string message;   ///< the physical reason of a bad end; else empty
   bool reached = false;  ///< the time asked for; else an event halted it before, or the status says why
+  bool halted = false;   ///< an event that stops runs has halted it, maybe at the time asked for
 };
 
 /// One simulation, of one thread. Steps that go well allocate nothing.

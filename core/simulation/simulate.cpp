@@ -77,8 +77,7 @@ class Run final : public SteppingObserver {
     } else {
       monitor_.show(state);
     }
-    monitor_.audit_energy(state);
-    monitor_.finish_momenta();
+    monitor_.finish(state);
     const bool completed = status == RunStatus::completed;
     if (validity_) validity_->finish(completed ? state : monitor_.trusted(), status != RunStatus::singular);
   }

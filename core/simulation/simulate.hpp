@@ -85,7 +85,8 @@ struct RunOptions {
   const EquationsOfMotion* beyond = nullptr;
 };
 
-/// Greatest change of the momenta of a tree that nothing outside acts on, over the states that energy is looked at in.
+/// Greatest change of the momenta of a tree that nothing outside acts on, over the states that energy is looked at in:
+/// of the angular one over each eighth of them and the last.
 struct MomentumDrift {
   /// The tree floats freely: no weight, and no load acts on it from outside. What its bodies do to each other does not.
   bool conserved = false;

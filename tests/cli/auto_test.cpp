@@ -36,7 +36,7 @@ TEST(Auto, TellsItsFormulationsOverTimeAndTheErrorTheyMake) {
   EXPECT_EQ(end, run.at("t_end"));
   EXPECT_FALSE(run.at("certificate").at("estimated_error").is_null());
   // Every output once, whatever the formulation.
-  EXPECT_EQ(lines(folder.read("out/results.csv")).size(), 102U);
+  EXPECT_EQ(lines(folder.read("out/results.csv")).size(), 502U);
 }
 
 /// A quick slew in half of the time bends more, and needs more than at a hundredth of its speed.

@@ -37,6 +37,14 @@ void rk4(Equations& f, double t, double h, std::vector<double>& y) {
   f.normalize(y);
 }
 
+TEST(HostedEquations, say_where_a_loop_cannot_be_closed) {
+  Equations equations(Scene::read(library(), WITHY_SOURCES "/scenes/gallery/four-bar.yaml"));
+  std::vector<double> y(equations.y0().begin(), equations.y0().end());
+  equations.normalize(y);
+  y.front() = std::nan("");
+  EXPECT_THROW(equations.normalize(y), std::invalid_argument);
+}
+
 // A host's integrator and that of withy find the same motion; each number of y is the column of its name.
 TEST(HostedEquations, integrated_by_a_host_are_the_simulation) {
   Scene scene = smooth_arm();

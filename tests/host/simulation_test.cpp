@@ -288,6 +288,51 @@ initial: {hinges: {axle: {position: 0.1}}}
   EXPECT_THAT(halts(", do: {switch_off: idle}, repeat: true"), all);
 }
 
+TEST(HostedSimulation, halts_at_a_stop_that_is_where_it_goes_anyway) {
+  Simulation simulation(Scene::parse(library(), R"(
+format: withy/1
+time: {end: 5}
+bodies: {table: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+events: {over: {at: 1, stop: true}}
+)"));
+  EXPECT_TRUE(simulation.advance_to(0.5));
+  EXPECT_FALSE(simulation.advance_to(1));
+  EXPECT_EQ(simulation.time(), 1);
+  EXPECT_EQ(simulation.events().back().name, "over");
+  EXPECT_TRUE(simulation.advance_to(1.5)) << "it may go on";
+}
+
+TEST(HostedSimulation, begins_anew_from_its_state_with_motions_that_it_moves) {
+  for (const char* sets : {"position", "rate", "acceleration"}) {
+    Scene scene = Scene::parse(library(), R"(format: withy/1
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+time: {end: 5}
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  rod: {type: rigid, mass: 1, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}
+hinges:
+  rail: {type: prismatic, axis: [1, 0, 0], parent: world, child: hub}
+  pin: {type: revolute, axis: [0, 0, 1], parent: hub, child: rod}
+motions: {drive: {hinge: rail, type: input, sets: )" + std::string(sets) +
+                                               "}}\ninitial: {hinges: {pin: {position: 0.4}}}\n");
+    Simulation driven(scene);
+    for (int k = 1; k <= 5; ++k) {
+      driven.set_input("drive", std::string(sets) == "position" ? 0.01 * k * k : 0.2 * k);
+      driven.step(0.1 * k);
+    }
+    scene.set("initial", driven.state());
+    Simulation begun(scene);
+    EXPECT_GT(driven.output("rail.rate"), 0.1) << sets;
+    for (const double t : {0.5, 0.8}) {  // nothing is set from here on
+      driven.step(t);
+      begun.step(t);
+      for (const char* output : {"rail", "rail.rate", "pin", "pin.rate"})
+        EXPECT_NEAR(begun.output(output), driven.output(output), 1e-8) << sets << ' ' << output << ' ' << t;
+    }
+  }
+}
+
 TEST(HostedSimulation, that_cannot_go_on_says_why_and_may_go_back) {
   Scene scene = Scene::read(library(), WITHY_SOURCES "/scenes/two-link-slew.yaml");
   Simulation simulation(scene.set("loads.slew.time_scale", 1.2).formulation("consistent"));

@@ -324,6 +324,35 @@ void expect_right_or_unsaid(const std::string& text) {
 
 // In coarse steps without error control the other model enters the stop in mid-step and is thrown, ours is not: 1500
 // degrees were told of 2.5.
+/// Its steps are a hundred times as long as those that its stretching allows others, and its evaluations as few.
+TEST(Estimate, AtAnyCostGoesToTheEndOfARunWhoseIntegratorNoVibrationLimits) {
+  const Prepared prepared = prepare(SceneValues::parse(R"(format: withy/1
+formulation: quadratic
+integrator: {name: radau, rtol: 1e-6, atol: 1e-8}
+time: {end: 3}
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  blade: {type: beam, length: 10, mass_per_length: 1.2, bending_y: {stiffness: 1.4e4, modes: 1},
+          extension: {stiffness: 2.8e9, modes: 2}}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub, child: blade}
+motions: {turn: {type: spin-up, hinge: axle, rate: 6, duration: 3}}
+)",
+                                                       "blade.yaml"),
+                                    plugins());
+  RunSettings settings;
+  settings.estimate = Estimate::always;
+  const CertifiedRun dear = run(prepared, plugins(), settings);
+  ASSERT_TRUE(dear.certificate.estimate) << dear.certificate.without_estimate;
+  const ErrorEstimate& estimate = *dear.certificate.estimate;
+  EXPECT_EQ(estimate.distances.until, estimate.end);
+  EXPECT_GT(estimate.evaluations, dear.summary.steps.evaluations) << "those of the run do not do";
+  const double off = estimate.distances.deflections.at("blade.tip");
+  EXPECT_GT(off, 1e-3) << "third order, of a deflection of half a metre";
+  EXPECT_LT(off, 0.1);
+}
+
 TEST(Estimate, OfAnArmThatFallsOnAStopIsNotThatOfAModelThatCoarseStepsThrow) {
   for (const char* lower : {"-1.0", "-0.7", "-0.4"})
     expect_right_or_unsaid(std::string(R"(format: withy/1
