@@ -41,9 +41,11 @@ std::vector<std::string> outputs_of_mass() {
                                   "outputs.base_centre={type: frame, of: base.centre, show: position}"};
   for (std::size_t i = 0; i < gauss_at.size(); ++i) {
     const std::string name = "at" + std::to_string(i);
-    all.insert(all.end(),
-               {"--set", "bodies.boom.frames." + name + "={at: " + std::to_string(boom_length * gauss_at.at(i)) + "}",
-                "--set", "outputs." + name + "={type: frame, of: boom." + name + ", show: position}"});
+    std::ostringstream at;
+    at.precision(17);
+    at << boom_length * gauss_at.at(i);
+    all.insert(all.end(), {"--set", "bodies.boom.frames." + name + "={at: " + at.str() + "}", "--set",
+                           "outputs." + name + "={type: frame, of: boom." + name + ", show: position}"});
   }
   return all;
 }
