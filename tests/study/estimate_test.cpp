@@ -324,7 +324,7 @@ void expect_right_or_unsaid(const std::string& text) {
 
 // In coarse steps without error control the other model enters the stop in mid-step and is thrown, ours is not: 1500
 // degrees were told of 2.5.
-/// Its steps are a hundred times as long as those that its stretching allows others, and its evaluations as few.
+/// Its steps are longer than stretching allows others, and its evaluations fewer than they need.
 TEST(Estimate, AtAnyCostGoesToTheEndOfARunWhoseIntegratorNoVibrationLimits) {
   const Prepared prepared = prepare(SceneValues::parse(R"(format: withy/1
 formulation: quadratic
@@ -337,7 +337,7 @@ bodies:
 hinges:
   axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
   root: {type: weld, parent: hub, child: blade}
-motions: {turn: {type: spin-up, hinge: axle, rate: 6, duration: 3}}
+motions: {turn: {type: spin-up, hinge: axle, rate: 2, duration: 3}}
 )",
                                                        "blade.yaml"),
                                     plugins());
@@ -348,9 +348,9 @@ motions: {turn: {type: spin-up, hinge: axle, rate: 6, duration: 3}}
   const ErrorEstimate& estimate = *dear.certificate.estimate;
   EXPECT_EQ(estimate.distances.until, estimate.end);
   EXPECT_GT(estimate.evaluations, dear.summary.steps.evaluations) << "those of the run do not do";
-  const double off = estimate.distances.deflections.at("blade.tip");
-  EXPECT_GT(off, 1e-3) << "third order, of a deflection of half a metre";
-  EXPECT_LT(off, 0.1);
+  // What the rows of two runs, in quadratic and in exact, differ by every 0.01 s.
+  const double off = 0.04496;
+  EXPECT_NEAR(estimate.distances.deflections.at("blade.tip.deflection"), off, 0.05 * off);
 }
 
 TEST(Estimate, OfAnArmThatFallsOnAStopIsNotThatOfAModelThatCoarseStepsThrow) {
