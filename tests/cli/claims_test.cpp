@@ -28,12 +28,13 @@ void PrintTo(const ClaimedCase& c, std::ostream* out) {
   for (const std::string& set : c.sets) *out << ' ' << set;
 }
 
-/// The base and the boom of beam-on-base.yaml, and where Gauss's rule of five points wants the boom looked at.
+/// The base and the boom of beam-on-base.yaml, and where Gauss's rule of seven points wants the boom looked at.
 constexpr double base_mass = 10, boom_mass = 3, boom_length = 2;
-constexpr std::array<double, 5> gauss_at = {0.0469100770306680, 0.2307653449471585, 0.5, 0.7692346550528415,
-                                            0.9530899229693320};
-constexpr std::array<double, 5> gauss_weights = {0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
-                                                 0.2393143352496832, 0.1184634425280945};
+constexpr std::array<double, 7> gauss_at = {0.02544604382862076, 0.1292344072003028, 0.2970774243113014, 0.5,
+                                            0.7029225756886985,  0.8707655927996972, 0.9745539561713792};
+constexpr std::array<double, 7> gauss_weights = {0.06474248308443485, 0.1398526957446384, 0.1909150252525595,
+                                                 0.2089795918367347,  0.1909150252525595, 0.1398526957446384,
+                                                 0.06474248308443485};
 
 /// Outputs that tell where the mass of beam-on-base.yaml is.
 std::vector<std::string> outputs_of_mass() {
