@@ -314,8 +314,8 @@ bodies:
 hinges:
   rail: {type: prismatic, axis: [1, 0, 0], parent: world, child: hub}
   pin: {type: revolute, axis: [0, 0, 1], parent: hub, child: rod}
-motions: {drive: {hinge: rail, type: input, sets: )" + std::string(sets) +
-                                               "}}\ninitial: {hinges: {pin: {position: 0.4}}}\n");
+motions: {drive: {hinge: rail, type: input, sets: )" +
+                                              std::string(sets) + "}}\ninitial: {hinges: {pin: {position: 0.4}}}\n");
     Simulation driven(scene);
     for (int k = 1; k <= 5; ++k) {
       driven.set_input("drive", std::string(sets) == "position" ? 0.01 * k * k : 0.2 * k);
