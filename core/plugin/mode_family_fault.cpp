@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "withy/core/plugin/false_slope.hpp"
 #include "withy/core/plugin/mode_family.hpp"
