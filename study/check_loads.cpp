@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "withy/core/model/addition_fault.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/tangents/load_derivatives.hpp"
@@ -60,6 +63,9 @@ std::string discrete_fault(const LoadNode& node, const Layout& layout, const Sta
 void check_load_derivatives(const Prepared& prepared, const State& state) {
   const Model& model = prepared.model();
   if (model.loads().empty() || has_foreign_laws(model)) return;
+  for (std::size_t l = 0; l < model.loads().size(); ++l)
+    if (std::string why = addition_fault(model, l, state); !why.empty())
+      refuse_load(prepared, model.loads()[l].name, std::move(why));
   if (const auto wrong = false_derivative(model, state))
     refuse_load(prepared, model.loads()[wrong->load].name, wrong->what);
 }

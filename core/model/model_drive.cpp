@@ -1,6 +1,7 @@
 // What moves a model from outside its tree: motions that prescribe hinges, and loads with their states.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -18,11 +19,16 @@ namespace {
 /// Of a load or a motion.
 template <class Part>
 void check_times(const std::string& who, const Part& part) {
-  const bool sound = plugin_call(who + " does not say when it jumps or ends", [&] {
-    const std::vector<double> jumps = part.discontinuities();
-    return !std::isnan(part.end()) && std::none_of(jumps.begin(), jumps.end(), [](double t) { return std::isnan(t); });
-  });
-  if (!sound) throw std::invalid_argument(who + " jumps or ends at a time that is no number");
+  const auto [jumps, end] = plugin_call(who + " does not say when it jumps or ends",
+                                        [&] { return std::pair(part.discontinuities(), part.end()); });
+  if (std::isnan(end) || std::any_of(jumps.begin(), jumps.end(), [](double t) { return std::isnan(t); }))
+    throw std::invalid_argument(who + " jumps or ends at a time that is no number");
+  const auto behind = std::is_sorted_until(jumps.begin(), jumps.end());
+  if (behind == jumps.end()) return;
+  std::ostringstream text;
+  text << who << " says that it jumps at " << *std::prev(behind) << " s and then at " << *behind
+       << " s; need times that increase";
+  throw std::invalid_argument(text.str());
 }
 
 /// What a load says of its states and of the scratch space it needs.

@@ -1,6 +1,19 @@
 #include "withy/core/plugin/measured_place.hpp"
 
+#include <cmath>
+#include <limits>
+
 namespace withy {
+namespace {
+
+/// How far a place gives. One that is none, of another number of modes or without numbers, gives more than all: it
+/// becomes a frame, and the model that is built of it says what is wrong there.
+double compliance_at(const ModalShape& shape, const PointExpansion& at) {
+  const double compliance = at.phi.cols() == shape.modes() ? shape.compliance(at) : std::nan("");
+  return std::isfinite(compliance) ? compliance : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
 
 std::string MeasuredPlace::in_words() const {
   if (name == "tip") return "the tip";
@@ -17,13 +30,13 @@ std::optional<MeasuredPlace> measured_place(const Body& body) {
   std::optional<PointExpansion> station = name.empty() ? std::nullopt : body.station(name);
   std::optional<MeasuredPlace> most;
   if (station) most = {name, *std::move(station)};
-  double greatest = most ? much_more * shape.compliance(most->at) : 0;
+  double greatest = most ? much_more * compliance_at(shape, most->at) : 0;
   for (int k = 1; k < parts && shape.modes() > 0; ++k) {
     std::optional<PointExpansion> at = body.station(shape.length * k / parts);
     if (!at) break;  // it has none along itself
-    const double gives = shape.compliance(*at);
-    if (gives <= greatest) continue;
-    greatest = gives;
+    const double here = compliance_at(shape, *at);
+    if (here <= greatest) continue;
+    greatest = here;
     most = {"at_" + std::to_string(percent * k), *std::move(at)};
   }
   return most;

@@ -20,6 +20,12 @@ void check_stability(const Integrator& integrator, const std::string& who) {
                               "; need a positive number, infinity, or nothing where it is not known");
 }
 
+void check_order(const Integrator& integrator, const std::string& who) {
+  const int order = plugin_call(who + " does not say its order", [&] { return integrator.order(); });
+  if (order < 1)
+    throw std::invalid_argument(who + " says that it is of order " + std::to_string(order) + "; need at least 1");
+}
+
 /// The shortest text that is this number and no other.
 std::string all_digits(double x) {
   char text[32];
@@ -30,6 +36,7 @@ std::string all_digits(double x) {
 
 std::unique_ptr<Stepper> start_stepper(const Integrator& integrator, const EquationsOfMotion& equations,
                                        const State& state, const std::string& who) {
+  check_order(integrator, who);
   check_stability(integrator, who);
   std::unique_ptr<Stepper> stepper =
       plugin_call(who + " cannot begin", [&] { return integrator.start(equations, state); });

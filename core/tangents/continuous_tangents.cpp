@@ -44,6 +44,20 @@ void add_differences(Function&& of, const Layout& layout, std::span<const double
   }
 }
 
+/// Whether the rates of a load's continuous part change with accelerations a, of which its add_derivatives has nothing
+/// to say. The last bit counts: what does not read them gives the same.
+bool feels_accelerations(const LoadNode& node, LoadView view, std::span<const double> a) {
+  const auto rates_with = [&](double change) {
+    std::vector<double> accelerations(a.begin(), a.end()), rates(node.continuous_slot.count);
+    for (std::size_t i = 0; i < a.size(); ++i)
+      accelerations[i] += change * (1 + golden_section * static_cast<double>(i));
+    view.accelerations = accelerations;
+    node.continuous->rates(view, rates);
+    return rates;
+  };
+  return rates_with(0) != rates_with(1);
+}
+
 }  // namespace
 
 ContinuousTangents continuous_tangents(const Model& model, double t, std::span<const double> y,
@@ -66,8 +80,9 @@ ContinuousTangents continuous_tangents(const Model& model, double t, std::span<c
                              all.rate_by_speed.middleRows(first, count),
                              all.rate_by_state.block(first, first, count, count)};
     if (of_wrenches && !node.load->frames().empty()) differenced[slot.load] = true;
-    if (derivatives_call(node.name,
-                         [&] { return node.continuous->add_derivatives(node.view(t, y, layout, scratch), to); }))
+    if (!feels_accelerations(node, node.view(t, y, layout, scratch), a) && derivatives_call(node.name, [&] {
+          return node.continuous->add_derivatives(node.view(t, y, layout, scratch), to);
+        }))
       continue;
     differenced[slot.load] = true;
     const auto part = [&](std::span<const double> at) {

@@ -20,11 +20,11 @@ struct ContinuousTangents {
   Eigen::MatrixXd rate_by_acceleration;                 ///< z × speeds
 };
 
-/// At (t, y), and rates with the accelerations a: exactly where ContinuousPart::add_derivatives does so, else by
-/// central differences, and `differenced` of the load becomes true. \param displace moves y by a displacement along one
-/// speed \param of_wrenches efforts on all speeds of the loads' wrenches, which see the state that is given while the
-/// tree stays where it is at y: what the motion of frames does is the recursion's. Empty where no such load acts at a
-/// frame.
+/// At (t, y), and rates with the accelerations a: exactly where ContinuousPart::add_derivatives does so and rates do
+/// not change with a, else by central differences, and `differenced` of the load becomes true. \param displace moves y
+/// by a displacement along one speed \param of_wrenches efforts on all speeds of the loads' wrenches, which see the
+/// state that is given while the tree stays where it is at y: what the motion of frames does is the recursion's. Empty
+/// where no such load acts at a frame.
 ContinuousTangents continuous_tangents(const Model& model, double t, std::span<const double> y,
                                        std::span<const double> a,
                                        const std::function<void(std::span<double>, std::size_t, double)>& displace,

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "withy/core/model/addition_fault.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/tangents/load_derivatives.hpp"
@@ -167,6 +168,12 @@ inline void expect_continuous_part_conforms(const Load& load, const Model& bare)
     EXPECT_TRUE(std::isfinite(begun.state.y[begun.node->continuous_slot.first + i]));
 }
 
+/// Efforts are added to those of other loads, those of its parts with states too.
+inline void expect_efforts_are_added(const Load& load, const Model& bare) {
+  const BegunLoad begun(load, bare);
+  EXPECT_EQ(addition_fault(begun.model, begun.model.loads().size() - 1, begun.state), "");
+}
+
 /// What a load says of its derivatives and of those of its continuous part is what differences of it give.
 inline void expect_no_false_derivative(const Load& load, const Model& bare) {
   const BegunLoad begun(load, bare);
@@ -182,6 +189,7 @@ inline void expect_no_false_derivative(const Load& load, const Model& bare) {
 inline void expect_load_conforms(const Load& load, const Model& model) {
   expect_load_derivatives(load, model);
   expect_no_false_derivative(load, model);
+  expect_efforts_are_added(load, model);
   expect_discrete_part_conforms(load, model);
   expect_continuous_part_conforms(load, model);
   const auto bound = load.bind(model);

@@ -1,9 +1,11 @@
 // Loads that change at instants alone: sampled controllers and relays.
 #include <gmock/gmock.h>
+#include <gtest/gtest-spi.h>
 
 #include <cmath>
 #include <optional>
 
+#include "withy/core/plugin/effortless_load.hpp"
 #include "withy/tests/conformance/load_suite.hpp"
 #include "withy/tests/loads/load_plugins.hpp"
 #include "withy/tests/loads/scene_run.hpp"
@@ -18,6 +20,41 @@ std::unique_ptr<Load> discrete_load(const std::string& id, std::vector<Value::Me
   Registry registry = load_registry();
   return make_plugin<Load>(registry, id, std::move(given));
 }
+
+/// Sets the effort of its discrete or of its continuous state in the place of adding it.
+class SettingParts final : public Load {
+ public:
+  explicit SettingParts(bool discrete) : discrete_(discrete) {}
+  std::unique_ptr<BoundLoad> bind(const Model&) const override { return std::make_unique<Bound>(discrete_); }
+
+ private:
+  class Bound final : public EffortlessLoad, private DiscretePart, private ContinuousPart {
+   public:
+    explicit Bound(bool discrete) : discrete_(discrete) {}
+    const DiscretePart* discrete() const override { return discrete_ ? this : nullptr; }
+    const ContinuousPart* continuous() const override { return discrete_ ? nullptr : this; }
+
+   private:
+    using EffortlessLoad::add;
+    using EffortlessLoad::add_derivatives;
+    using EffortlessLoad::begin;
+    std::size_t states() const override { return 1; }
+    std::string name(std::size_t) const override { return "z"; }
+    void renew(double, std::span<const double>, std::span<const double>, const Crossing&, std::span<double>,
+               std::span<double>) const noexcept override {}
+    void begin(const LoadView&, std::span<double> z) const noexcept override { z[0] = 3; }
+    void rates(const LoadView&, std::span<double> rates) const noexcept override { rates[0] = 0; }
+    void add(double, std::span<const double> d, std::span<double> efforts) const noexcept override {
+      efforts[0] = d[0];
+    }
+    void add(const LoadView& view, std::span<double> efforts) const noexcept override {
+      efforts[0] = view.continuous[0];
+    }
+
+    bool discrete_;
+  };
+  bool discrete_;
+};
 
 const std::string sampled_feedback = turntable + R"(loads:
   control: {type: pd-controller, law: constant, sample: 0.03, hinges: {axle: {to: 0.5, stiffness: 5, damping: 0.4}}}
@@ -108,6 +145,15 @@ TEST(SampledController, conforms_to_the_suite) {
                                                                                    {"stiffness", Value(5.0)},
                                                                                    {"damping", Value(1.0)}})}})}}),
       *s.scene.model);
+}
+
+// They would wipe out other loads.
+TEST(LoadSuite, finds_parts_that_set_their_efforts) {
+  const test::LoadedScene s(turntable);
+  EXPECT_NONFATAL_FAILURE(test::expect_efforts_are_added(SettingParts(true), *s.scene.model),
+                          "(DiscretePart::add): it sets efforts, and is to add to them");
+  EXPECT_NONFATAL_FAILURE(test::expect_efforts_are_added(SettingParts(false), *s.scene.model),
+                          "(ContinuousPart::add): it sets efforts, and is to add to them");
 }
 
 // Off and on again between two of its samples, of which it met none while it was off: it begins anew all the same, at

@@ -50,7 +50,10 @@ class BoundBoaster final : public BoundLoad, private DiscretePart {
   std::size_t scratch() const override { return fault_ == "scratch" ? never_set : 0; }
   void add(double, std::span<const double>, std::span<const double>, std::span<double>,
            std::span<double>) const noexcept override {}
-  std::vector<double> discontinuities() const override { return {}; }
+  std::vector<double> discontinuities() const override {
+    if (fault_ == "jumps-back") return {0.25, 0.25, 0.125};
+    return {};
+  }
   double end() const override { return 0; }
   void begin(State& state) const override {
     if (fault_ == "fewer") state.y.resize(1);
@@ -117,6 +120,10 @@ TEST_F(HostileLoads, WhoseClocksHaveNoPeriodAreReported) {
   EXPECT_EQ(load("never"), who + "is renewed every inf" + need);
   EXPECT_EQ(load("nan"), who + "is renewed every nan" + need);
   EXPECT_EQ(load("throws"), who + "does not say what it keeps: no clock");
+}
+
+TEST_F(HostileLoads, WhoseJumpsDoNotIncreaseAreReported) {
+  EXPECT_EQ(load("jumps-back"), who + "says that it jumps at 0.25 s and then at 0.125 s; need times that increase");
 }
 
 TEST_F(HostileLoads, ThatSayToHaveMoreNumbersThanAnyMemoryAreReported) {

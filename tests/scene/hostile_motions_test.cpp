@@ -119,7 +119,10 @@ class Wave final : public Motion {
     if (fault_ == "no-rate" && t > 0.5) p.rate = nan;
     return p;
   }
-  std::vector<double> discontinuities() const override { return {}; }
+  std::vector<double> discontinuities() const override {
+    if (fault_ == "jumps-back") return {0.5, 0.25};
+    return {};
+  }
   double end() const override { return 0; }
 
  private:
@@ -280,6 +283,12 @@ TEST_F(HostileMotions, WhoseMotionsHaveRatesThatAreNoneAreReported) {
                                                                  "differences of its rate give -3.6000"));
   EXPECT_EQ(motion("no-rate"), made + "at t = 0.683013 s its rate is nan, where its coordinate is finite");
   EXPECT_EQ(motion("throws"), at + "does not say what it is: out of order");
+}
+
+TEST_F(HostileMotions, WhoseMotionsJumpAtTimesThatDoNotIncreaseAreReported) {
+  EXPECT_EQ(
+      problems(with_sine("nothing") + "motions:\n  m: {type: wave, hinge: h, fault: jumps-back}\n", registry),
+      "s.yaml:7:3: /motions/m: motion 'm' says that it jumps at 0.5 s and then at 0.25 s; need times that increase");
 }
 
 TEST_F(HostileMotions, WhoseFormulationsThrowWhereTheyAreAskedForTheirTermsAreReported) {

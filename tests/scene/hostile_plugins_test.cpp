@@ -111,6 +111,38 @@ class Misplaced final : public Body {
   ModalShape shape_;
 };
 
+/// A body of two modes whose stations, where it is measured or along it, may be those of a rigid one.
+class Unsized final : public Body {
+ public:
+  explicit Unsized(std::string fault) : fault_(std::move(fault)) {
+    PointExpansion end = PointExpansion::rigid(Vector3::UnitX(), modes);
+    end.phi(1, 0) = end.phi(2, 1) = 1;
+    shape_.particles.push_back({1, std::move(end)});
+    shape_.mode_names = {"y", "z"};
+    shape_.stiffness = 100 * Eigen::Matrix2d::Identity();
+    shape_.damping = Eigen::Matrix2d::Zero();
+    shape_.length = 1;
+  }
+  const ModalShape& shape() const override { return shape_; }
+  std::optional<PointExpansion> station(const StationName& name) const override {
+    if (name == StationName("root")) return PointExpansion::rigid(Vector3::Zero(), modes);
+    const bool along = std::holds_alternative<double>(name);
+    if (!along && name != StationName(measured_station())) return {};
+    PointExpansion at = shape_.particles[0].at;
+    if (fault_ == (along ? "none-along" : "none")) return PointExpansion::rigid(at.X, 0);
+    if (fault_ == (along ? "one-along" : "one")) at.phi = Matrix3X::Zero(3, 1);
+    if (along) at.phi *= 0.1;
+    return at;
+  }
+  std::string stations() const override { return "root, end, numbers"; }
+  std::string measured_station() const override { return "end"; }
+
+ private:
+  static constexpr Eigen::Index modes = 2;
+  std::string fault_;
+  ModalShape shape_;
+};
+
 /// Acts at a frame that its scene may not have.
 class Elsewhere final : public Load {
  public:
@@ -171,7 +203,7 @@ class Mistaken final : public Sensor {
   std::string fault_;
 };
 
-/// Bends as x², or says so wrongly.
+/// Bends as x², or says so wrongly; or as 1 − cos 200 x.
 class Parabola final : public ModeFamily {
  public:
   explicit Parabola(std::string fault) : fault_(std::move(fault)) {}
@@ -188,6 +220,13 @@ class Parabola final : public ModeFamily {
     double wave_number() const override { return 2 / length_; }
     void evaluate(double x, std::span<double> phi, std::span<double> slope,
                   std::span<double> curvature) const override {
+      if (fault_ == "waves") {
+        constexpr double waves = 200;
+        phi[0] = 1 - std::cos(waves * x);
+        slope[0] = waves * std::sin(waves * x);
+        curvature[0] = waves * waves * std::cos(waves * x);
+        return;
+      }
       const double size = std::sqrt(5.0) / length_ / length_;
       phi[0] = size * x * x;
       slope[0] = (fault_ == "slope" ? 4 : 2) * size * x;
@@ -237,6 +276,7 @@ class HostilePlugins : public SceneTest {
     add_load("throws-at-times", &misbehaving<Deed::throws_at_times>);
     add_load("begins-nowhere", &misbehaving<Deed::begins_nowhere>);
     e.add(faulty_plugin<Body, Misplaced>("misplaced"));
+    e.add(faulty_plugin<Body, Unsized>("unsized"));
     e.add(faulty_plugin<Sensor, Mistaken>("mistaken"));
     e.add(faulty_plugin<ModeFamily, Parabola>("parabola"));
     Plugin<Load> elsewhere;
@@ -272,7 +312,7 @@ TEST_F(HostilePlugins, ThatMakeNothingAreReported) {
   EXPECT_EQ(
       problem("type: null"),
       "s.yaml:4:7: /bodies/b/type: missing; need one of: beam, greedy, lump, misplaced, modal, nan, null, number, "
-      "plate, refused, rigid, rootless, rounds, throws");
+      "plate, refused, rigid, rootless, rounds, throws, unsized");
   EXPECT_EQ(problem("type: 'null'"), "s.yaml:4:3: /bodies/b: body 'null' cannot be made and does not say why");
 }
 
@@ -322,6 +362,18 @@ TEST_F(HostilePlugins, WhoseStationsThrowOrAreMissingAreReportedAtTheBody) {
             who + "does not say what the body is: out of order");
 }
 
+TEST_F(HostilePlugins, WhoseMeasuredStationsHaveAnotherNumberOfModesAreReported) {
+  const auto body = [&](const std::string& fault) { return problem("type: unsized, fault: " + fault); };
+  const auto refusal = [](const std::string& frame, const std::string& size) {
+    return "frame '" + frame + "' of body 'b' cannot be used: Phi is " + size + ", not 3 by 2";
+  };
+  EXPECT_EQ(body("nothing"), "");
+  EXPECT_THAT(body("none"), testing::HasSubstr(refusal("end", "3 by 0")));
+  EXPECT_THAT(body("one"), testing::HasSubstr(refusal("end", "3 by 1")));
+  EXPECT_THAT(body("none-along"), testing::HasSubstr(refusal("at_5", "3 by 0")));
+  EXPECT_THAT(body("one-along"), testing::HasSubstr(refusal("at_5", "3 by 1")));
+}
+
 TEST_F(HostilePlugins, WhoseLoadsActWhereThereIsNoFrameAreReportedAtTheLoad) {
   const auto load = [&](const std::string& at) {
     return problems(with("type: lump") + "loads:\n  l: {type: elsewhere, " + at + "}\n", registry);
@@ -362,6 +414,7 @@ TEST_F(HostilePlugins, WhoseFunctionsAreNotAsTheySayAreReportedAtTheFamily) {
   EXPECT_EQ(family("nothing"), "");
   EXPECT_THAT(family("none"), testing::EndsWith("/family/name: " + made + "there are 0, where 1 are asked for"));
   EXPECT_THAT(family("slope"), testing::HasSubstr(made + "function 1 has the slope "));
+  EXPECT_THAT(family("waves"), testing::HasSubstr(made + "their greatest wave number is 2 1/m, and they vary faster"));
 }
 
 TEST_F(HostilePlugins, WhoseLoadsBeginWhereThereIsNoNumberAreReportedAtTheLoad) {

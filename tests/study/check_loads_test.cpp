@@ -12,6 +12,7 @@
 #include "withy/plugins/host/plugin_host.hpp"
 #include "withy/study/comparison.hpp"
 #include "withy/study/configuration.hpp"
+#include "withy/study/linear_model.hpp"
 #include "withy/study/probe.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/term_study.hpp"
@@ -22,34 +23,36 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A filter ż = x − z that pushes with −2 z; it may forget that it measures x.
+/// A filter ż = x − z that pushes with −2 z; it may forget that it measures x, measure the acceleration too, or set its
+/// effort.
 class Filter final : public ContinuousPart {
  public:
-  explicit Filter(bool forgets) : forgets_(forgets) {}
+  explicit Filter(std::string fault) : fault_(std::move(fault)) {}
   std::size_t states() const override { return 1; }
   std::string name(std::size_t) const override { return "z"; }
   void begin(const LoadView&, std::span<double> z) const noexcept override { z[0] = 0; }
   void rates(const LoadView& view, std::span<double> rates) const noexcept override {
     rates[0] = view.positions()[0] - view.continuous[0];
+    if (fault_ == "filter-feels") rates[0] += view.accelerations[0];
   }
   void add(const LoadView& view, std::span<double> efforts) const noexcept override {
-    efforts[0] -= 2 * view.continuous[0];
+    efforts[0] = (fault_ == "filter-sets" ? 0 : efforts[0]) - 2 * view.continuous[0];
   }
   bool add_derivatives(const LoadView&, ContinuousDerivatives& to) const override {
     to.effort_by_state(0, 0) -= 2;
-    to.rate_by_position(0, 0) += forgets_ ? 0 : 1;
+    to.rate_by_position(0, 0) += fault_ == "filter-forgets" ? 0 : 1;
     to.rate_by_state(0, 0) -= 1;
     return true;
   }
 
  private:
-  bool forgets_;
+  std::string fault_;
 };
 
-/// A number that is held, with a function that switches it; either may be none.
+/// A number that is held, with a function that switches it; either may be none. It may set an effort of zero.
 class Relay final : public DiscretePart {
  public:
-  Relay(double held, double function) : held_(held), function_(function) {}
+  Relay(double held, double function, bool sets) : held_(held), function_(function), sets_(sets) {}
   std::size_t states() const override { return 1; }
   std::size_t switches() const override { return 1; }
   void switching(double, std::span<const double>, std::span<const double>, std::span<const double>,
@@ -60,10 +63,13 @@ class Relay final : public DiscretePart {
              std::span<double>) const noexcept override {
     d[0] = held_;
   }
-  void add(double, std::span<const double>, std::span<double>) const noexcept override {}
+  void add(double, std::span<const double>, std::span<double> efforts) const noexcept override {
+    if (sets_) efforts[0] = 0;
+  }
 
  private:
   double held_, function_;
+  bool sets_;
 };
 
 /// A spring of 3 N/m on the first speed, twice as stiff beyond 0.05 m if asked for; `fault` is in what it says.
@@ -71,14 +77,15 @@ class BoundSpring final : public BoundLoad {
  public:
   explicit BoundSpring(std::string fault) : fault_(std::move(fault)) {
     const double nan = std::nan("");
-    if (fault_.starts_with("filter")) filter_ = std::make_unique<Filter>(fault_ == "filter-forgets");
-    if (fault_ == "switch" || fault_ == "held" || fault_ == "relay")
-      relay_ = std::make_unique<Relay>(fault_ == "held" ? nan : 0, fault_ == "switch" ? nan : 1);
+    if (fault_.starts_with("filter")) filter_ = std::make_unique<Filter>(fault_);
+    if (fault_ == "switch" || fault_ == "held" || fault_.starts_with("relay"))
+      relay_ =
+          std::make_unique<Relay>(fault_ == "held" ? nan : 0, fault_ == "switch" ? nan : 1, fault_ == "relay-sets");
   }
   std::size_t scratch() const override { return 0; }
   void add(double, std::span<const double> x, std::span<const double>, std::span<double> efforts,
            std::span<double>) const noexcept override {
-    efforts[0] -= is_stiff(x[0]) ? 6 * x[0] - 3 * kink : 3 * x[0];
+    efforts[0] = (fault_ == "sets" ? 0 : efforts[0]) - (is_stiff(x[0]) ? 6 * x[0] - 3 * kink : 3 * x[0]);
   }
   bool add_derivatives(double, std::span<const double> x, std::span<const double>,
                        Eigen::Ref<Eigen::MatrixXd> by_position, Eigen::Ref<Eigen::MatrixXd>) const override {
@@ -144,14 +151,14 @@ class Euler final : public Stepper {
 
 class Failing final : public Integrator {
  public:
-  explicit Failing(bool begins) : begins_(begins) {}
+  explicit Failing(std::string fault) : fault_(std::move(fault)) {}
   std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
-    return begins_ ? std::make_unique<Euler>(equations, state) : nullptr;
+    return fault_ == "none" ? nullptr : std::make_unique<Euler>(equations, state);
   }
-  int order() const override { return 1; }
+  int order() const override { return fault_ == "order" ? -3 : 1; }
 
  private:
-  bool begins_;
+  std::string fault_;
 };
 
 /// The project's plugins with these two.
@@ -167,7 +174,7 @@ Registry& with_faulty() {
                        }});
     e.add(Plugin<Integrator>{
         "faulty", "Euler's", {fault}, [](const Value& p, const MakeContext&) -> std::unique_ptr<Integrator> {
-          return std::make_unique<Failing>(p.text_at("fault") != "none");
+          return std::make_unique<Failing>(p.text_at("fault"));
         }});
     made->admit(std::move(e), "test");
     return made;
@@ -263,6 +270,29 @@ TEST(CheckLoads, WithAKinkWhereTheMotionBeginsAreRight) {
   EXPECT_EQ(said_of("kink", false), "");
 }
 
+/// The efforts of other loads on 'h.0' would be lost, or not, by the order of the loads.
+TEST(CheckLoads, ThatSetTheirEffortsAreRefusedAtTheirPlace) {
+  const auto refusal = [](const std::string& function) {
+    return "/loads/l: load 'l' does not add its effort on 'h.0' (" + function +
+           "): it sets efforts, and is to add to them";
+  };
+  for (const bool run : {true, false}) {
+    EXPECT_EQ(said_of("sets", run), refusal("BoundLoad::add"));
+    EXPECT_EQ(said_of("filter-sets", run), refusal("ContinuousPart::add"));
+  }
+  EXPECT_EQ(said_of("relay-sets", true), refusal("DiscretePart::add")) << "small motions refuse what switches";
+}
+
+/// The body of 2 kg: u̇ = (−3 x − 2 z) / 2, ż = x − z + u̇, where add_derivatives has no place for u̇.
+TEST(CheckLoads, WhoseRatesMeasureAccelerationsAreDifferentiatedWithThem) {
+  const Prepared prepared = slider("loads:\n  l: {type: faulty, fault: filter-feels}\n");
+  const LinearModel m = linear_model({prepared, prepared.scene.initial, {}}, {{"h"}, {}});
+  ASSERT_EQ(m.states.size(), 3U);
+  EXPECT_LT((m.system.A.row(2) - Eigen::RowVector3d(-0.5, 0, -2)).cwiseAbs().maxCoeff(), 1e-9) << m.system.A;
+  EXPECT_NEAR(m.system.B(2, 0), 0.5, 1e-9);
+  EXPECT_THAT(m.derivatives, HasSubstr("the loads l"));
+}
+
 TEST(CheckLoads, WithoutNumbersWhereTheySwitchOrHoldAreRefused) {
   EXPECT_EQ(said_of("relay", true), "");
   EXPECT_THAT(said_of("switch", true), HasSubstr("/loads/l: load 'l' switches where functions are zero, and number 0 "
@@ -281,6 +311,8 @@ TEST(CheckIntegrator, ThatFailsIsToldAtItsPlaceWithItsName) {
   };
   EXPECT_THAT(told("none", [](const Prepared& p) { check_start(p); }),
               HasSubstr("/integrator: integrator 'faulty' cannot begin and does not say why"));
+  EXPECT_THAT(told("order", [](const Prepared& p) { check_start(p); }),
+              HasSubstr("/integrator: integrator 'faulty' says that it is of order -3; need at least 1"));
   EXPECT_THAT(told("step", [](const Prepared& p) { static_cast<void>(run(p, with_faulty())); }),
               HasSubstr("/integrator: integrator 'faulty' does not step: out of order"));
 }
