@@ -60,15 +60,16 @@ void set_in_motion(const Model& tree, const std::vector<double>& rates_at_rest, 
 void check_own_equations(const Prepared& prepared, const State& state) {
   const Scene& scene = prepared.scene;
   const Model& model = prepared.model();
-  const auto tree = std::make_shared<const Model>(model.bodies(), model.hinges(), model.gravity());
-  const Layout& layout = tree->layout();
+  std::shared_ptr<const Model> tree;
   std::unique_ptr<EquationsOfMotion> own, of_terms;
   try {
+    tree = std::make_shared<const Model>(model.bodies(), model.hinges(), model.gravity());
     own = compile_model(*scene.formulation, tree);
     of_terms = compile_equations(tree, scene.formulation->terms());
   } catch (const std::invalid_argument&) {
     return;
   }
+  const Layout& layout = tree->layout();
   State trial = tree->reference_state();
   std::copy_n(state.y.begin(), layout.positions, trial.y.begin());
   const double bent = bend(*tree, trial);
