@@ -152,7 +152,7 @@ Registry& with_others() {
           return std::make_unique<SaysQuadratic>(StrainOrder::linear);
         }});
     e.add(Plugin<Formulation>{
-        "true", "what it says", {}, [](const Value&, const MakeContext&) -> std::unique_ptr<Formulation> {
+        "whole-truth", "what it says", {}, [](const Value&, const MakeContext&) -> std::unique_ptr<Formulation> {
           return std::make_unique<SaysQuadratic>(StrainOrder::quadratic);
         }});
     e.add(Plugin<Hinge>{"short", "a slider of 1 m", {}, [](const Value&, const MakeContext&) -> std::unique_ptr<Hinge> {
@@ -170,7 +170,7 @@ Prepared made(const std::string& more) {
 
 /// A pendulum that begins level.
 Prepared pendulum(const std::string& integrator, const std::string& more = "") {
-  return made("time: {end: 1, output: 0.003}\nintegrator: {name: " + integrator +
+  return made("gravity: [0, 0, -9.81]\ntime: {end: 1, output: 0.003}\nintegrator: {name: " + integrator +
               "}\nbodies: {b: {type: rigid, mass: 2, center_of_mass: [1, 0, 0], inertia: [1, 1, 1, 0, 0, 0]}}\n"
               "hinges: {h: {type: revolute, axis: [0, 1, 0], parent: world, child: b}}\n" +
               more);
@@ -227,7 +227,7 @@ TEST(OthersIntegrators, ThatDoNotInterpolateEndARunByTheirNames) {
   EXPECT_THAT(said("end"), HasSubstr(who + "from where its steps begin"));
   EXPECT_THAT(said("start"), HasSubstr(who + "to where its steps end"));
   // Before an event is at a time that is none.
-  const std::string event = "events: {e: {when: h - 0.05 rad, direction: rising, stop: true}}\n";
+  const std::string event = "events: {e: {hinge: h, value: 0.05, direction: up, stop: true}}\n";
   EXPECT_EQ(said("none", event), "nothing");
   EXPECT_THAT(said("end", event), HasSubstr(who));
 }
@@ -239,7 +239,7 @@ TEST(OthersFormulations, WhoseEquationsAreNotThoseOfTheirTermsHaveNoSmallMotions
   };
   EXPECT_THAT(said("half-true"), HasSubstr("s.yaml: analyses of small motions and steady states go by the terms of a "
                                            "formulation, and those of 'half-true' are not its equations"));
-  for (const char* right : {"true", "quadratic", "linear", "ruthless", "exact", "symmetric"}) 
+  for (const char* right : {"whole-truth", "quadratic", "linear", "ruthless", "exact", "symmetric"})
     EXPECT_EQ(said(right), "nothing") << right;
 }
 
