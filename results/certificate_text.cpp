@@ -237,6 +237,7 @@ std::string beside_limit(double value, double limit) {
 }
 
 std::string cause_text(const study::StepLimit& s) {
+  if (s.cause() == "chosen") return "chosen by the integrator";
   if (s.cause() != "given") return "limited by " + s.cause();
   return s.controlled ? fmt::format("as long as the scene allows, {:.3g} s", s.longest) : "as the scene gives them";
 }

@@ -138,10 +138,14 @@ void Checker::got(const Value& value, const ParameterSpec& spec, const std::stri
 }
 
 void Checker::unknown_plugin(const Value& id, const std::string& kind, const std::vector<std::string>& ids) const {
+  const std::string available = "; available: " + (ids.empty() ? std::string("none") : listed(ids));
+  if (id.kind() == Value::Kind::map || id.kind() == Value::Kind::list)
+    return diagnostics_.error(id.place(),
+                              fmt::format("got {}; need the name of a plugin ({}){}", shown(id), kind, available));
   const std::string guess = id.kind() == Value::Kind::text ? known_elsewhere(id.text(), ids) : "";
-  diagnostics_.error(id.place(), fmt::format("no {} plugin {}{}; available: {}", kind, shown(id),
-                                             guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess),
-                                             ids.empty() ? "none" : listed(ids)));
+  diagnostics_.error(id.place(),
+                     fmt::format("no {} plugin {}{}{}", kind, shown(id),
+                                 guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess), available));
 }
 
 std::string Checker::suggest(std::string_view name, const std::vector<std::string>& candidates) const {

@@ -20,6 +20,7 @@
 #include "withy/study/check_loads.hpp"
 #include "withy/study/creep.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/own_equations.hpp"
 
 namespace withy::study {
 namespace {
@@ -97,6 +98,7 @@ Configuration::Configuration(const Prepared& prepared, StateAsGiven start, const
       follows_(held_) {
   const Model& model = prepared_.model();
   for (const LoadSlot& slot : layout().discrete_slots) require_no_switches(prepared.scene.file, model, slot);
+  check_own_equations(prepared, state_);
   model.prescribe(state_);
   rest_loops();
   close_loops(start, holding);

@@ -37,6 +37,15 @@ std::shared_ptr<const Interface> make_with_defaults(Registry& registry, const st
   throw InputError(name + ": " + (diagnostics.ok() ? "cannot be made" : diagnostics.errors().front().message));
 }
 
+/// What a study sets as a tolerance must be one: an integrator without it would run at another accuracy.
+void require_tolerance(const Plugin<Integrator>& plugin) {
+  for (const char* key : {"rtol", "atol"})
+    if (std::none_of(plugin.parameters.begin(), plugin.parameters.end(),
+                     [&](const ParameterSpec& spec) { return spec.key == key; }))
+      throw InputError("integrator '" + plugin.id + "' has no parameter '" + key +
+                       "': studies set tolerances by 'rtol' and 'atol', and know of no other");
+}
+
 /// Of the scene's formulation and those of single bodies.
 int least_rank(const Scene& scene) {
   int rank = scene.formulation->standing().rank;
@@ -174,6 +183,7 @@ std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std:
 }
 
 std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std::string& id, double tolerance) {
+  if (const auto* plugin = registry.find<Integrator>(id)) require_tolerance(*plugin);
   return make_integrator(registry, id,
                          Value::map({{"rtol", Value(tolerance)}, {"atol", Value(absolute_tolerance(tolerance))}}));
 }

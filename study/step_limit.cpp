@@ -75,6 +75,13 @@ std::optional<TooStiff> too_stiff_at(const Prepared& prepared, const State& stat
 
 bool controlled(const Scene& scene) { return scene.source.at("integrator").find("rtol") != nullptr; }
 
+/// Whether steps that have another length than the one before them can be only the integrator's own choice.
+bool chosen(const Scene& scene, const StepStatistics& steps) {
+  constexpr double rounding = 1e-6;
+  return !controlled(scene) && scene.source.at("integrator").find("step") == nullptr &&
+         steps.largest_step - steps.smallest_step > rounding * steps.largest_step;
+}
+
 /// The longest step that the scene allows [s]: its max_step, or from one sample of a load to the next.
 double longest_step(const Scene& scene) {
   const Value* given = scene.source.at("integrator").find("max_step");
@@ -156,7 +163,7 @@ std::string StepLimit::cause() const {
   // Steps land on what they may not pass, and are shorter here and there.
   constexpr double all_of_it = 0.9;
   if (mean == 0) return "unknown";
-  if (!controlled) return "given";
+  if (!controlled) return chosen ? "chosen" : "given";
   if (!limit || fastest == 0) return "unknown";
   if (!fastest_rests() && product > near_limit * *limit) return "stability";
   return mean >= all_of_it * longest ? "given" : "accuracy";
@@ -179,6 +186,7 @@ StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Regist
   const Held resting = absolute != nullptr ? resting_speeds(prepared.model(), summary, absolute->number()) : Held();
   StepLimit s = of_vibrations(prepared, *scene.integrator, summary, resting);
   s.controlled = controlled(scene);
+  s.chosen = chosen(scene, summary.steps);
   s.longest = longest_step(scene);
   find_fastest(prepared, summary, resting, s);
   if (s.cause() != "stability") return s;

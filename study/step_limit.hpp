@@ -28,11 +28,12 @@ struct StepLimit {
   /// those there are that no vibration limits and that can integrate these equations. Empty where nothing is proposed.
   std::optional<Slowing> fewer;
   std::vector<std::string> unlimited;
-  bool controlled = true;  ///< the integrator chooses its steps
+  bool controlled = true;  ///< the integrator chooses its steps by `rtol`
+  bool chosen = false;     ///< it has neither `rtol` nor `step`, and its steps have differed
   double longest =
       std::numeric_limits<double>::infinity();  ///< step that it may choose: max_step, or between samples [s]
-  /// "stability", "accuracy", "given" (by the scene, as fixed steps always are and those that it allows no longer) or
-  /// "unknown". Error control that meets the limit goes to and fro about it, so the mean stays a little below.
+  /// "stability", "accuracy", "given" (by the scene, as fixed steps always are and those that it allows no longer),
+  /// "chosen" (by the integrator, nobody else knows how) or "unknown". Error control that meets the limit goes to and fro about it, so the mean stays a little below.
   [[nodiscard]] std::string cause() const;
   /// Steps that are chosen go far beyond the limit: what is so fast rests for the most part, or began at the end.
   [[nodiscard]] bool fastest_rests() const;

@@ -39,7 +39,8 @@ Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::
       looked_until_(looks_over_ > 0 ? start_ : std::numeric_limits<double>::infinity()),
       end_(options.end),
       sample_(stepper_->state()),
-      shown_(sample_.y.size() == model.layout().size() ? model.layout().moving() : 0) {
+      shown_(sample_.y.size() == model.layout().size() ? model.layout().moving() : 0),
+      check_inside_(sample_, shown_) {
   if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr &&
       dynamic_cast<const ClosingStepper*>(stepper_.get()) == nullptr)
     throw std::invalid_argument(
@@ -235,11 +236,13 @@ bool Stepping::to(double limit, bool watching) {
       if (!zeros_.empty()) before_ = state();
     }
     look_ahead();
+    check_inside_.begin(state());
     step_to(std::min({limit, looked_until_, courses_.latest_end(state().time), end_beyond_kink()}));
     check_arithmetic();
     if (ended_.step.outcome != StepResult::Outcome::ok) return sound(state()) && end(Cause::failed);
     if (watching && !zeros_.empty()) {
       handled_ = zeros_.find(*stepper_, before_, [this](const Zero& z) { return changes_the_run(z); });
+      if (!handled_.empty()) check_inside_(*stepper_);
       const bool cut = std::any_of(handled_.begin(), handled_.end(), [&](const Zero& z) { return changes_the_run(z); });
       if (!act_on_zeros()) return false;
       if (cut && next_instant() < limit) return true;  // an event has made another due
@@ -262,6 +265,7 @@ void Stepping::check_arithmetic() {
 bool Stepping::after_step() {
   const double time = state().time;
   const bool outputs = times_.due(time);
+  if (outputs && times_.next() < time) check_inside_(*stepper_);
   for (; times_.due(time); times_.pass()) {
     sample_.time = times_.next();
     interpolate_step(*stepper_, sample_.time, sample_.y);

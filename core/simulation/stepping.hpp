@@ -12,6 +12,7 @@
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/event_actions.hpp"
+#include "withy/core/simulation/inside_check.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_event.hpp"
 #include "withy/core/simulation/run_times.hpp"
@@ -155,6 +156,7 @@ class Stepping {
   int zeros_at_once_ = 0;
   int steps_below_resolution_ = 0;  ///< in a row
   std::size_t shown_;               ///< of the first numbers of y: what outputs tell of motion
+  InsideCheck check_inside_;
   std::size_t step_evaluations_ = 0;
   FloatingPointGuard* arithmetic_ = nullptr;  ///< of the run under way
 };

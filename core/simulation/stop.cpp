@@ -54,6 +54,9 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
               "the derivatives are not finite" + where + (culprit.empty() ? culprit : ": " + culprit)};
     }
     case StepResult::Outcome::singular:
+      // No mass matrix can be solved whose hinge is no number.
+      if (const auto hinge = nonfinite_hinge(model, state, ahead))
+        return {RunStatus::diverged, "the derivatives are not finite" + where + ": " + hinge->why};
       if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr && result.body < 0)
         return {RunStatus::singular,
                 "the loops cannot be closed at the end of a step, however small: they reach a configuration from which "

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "withy/plugins/host/static_plugins.hpp"
+#include "withy/results/certificate_text.hpp"
 #include "withy/results/effective_mass_files.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/response_files.hpp"
@@ -203,6 +204,16 @@ TEST(TradePicture, ErrorsOfZeroHaveAPlaceOfTheirOwn) {
   EXPECT_THAT(drawn({1e-2, 4e-5}), testing::Not(testing::HasSubstr("error [%], 0 at")));
   EXPECT_THAT(drawn({1e-2, 4e-5, 0}), testing::HasSubstr("error [%], 0 at 0.0004"));
   EXPECT_THAT(drawn({0, 0}), testing::HasSubstr("error [%], 0 at 1e-12"));
+}
+
+TEST(StudyFiles, StepsThatAnIntegratorChoosesAreNotSaidToBeGiven) {
+  study::StepLimit steps;
+  steps.mean = 0.01;
+  steps.product = 0.16;
+  steps.controlled = false;
+  EXPECT_EQ(step_limit_text(steps), "as the scene gives them: mean step times fastest mode 0.16");
+  steps.chosen = true;
+  EXPECT_EQ(step_limit_text(steps), "chosen by the integrator: mean step times fastest mode 0.16");
 }
 
 }  // namespace
