@@ -16,6 +16,25 @@ std::vector<FrameIndex> frames_of(const Model& model) {
   return frames;
 }
 
+/// Of a hinge that holds the direction b, across a, where M has turned it to p = R b: with the shortest turn back, by α
+/// from the tangent t at b, the component of α t along a, which is a · p nearby and zero at −b nowhere, and its slope
+/// by p.
+struct Tilt {
+  double gap;
+  Vector3 slope;
+  Tilt(const ClosingEquation& e, const Matrix3& R) {
+    const Vector3 p = R * e.b, across = p - e.b.dot(p) * e.b;
+    const double sine = across.norm(), alpha = std::atan2(sine, e.b.dot(p));
+    const Vector3 t = sine > 0 ? Vector3(across / sine) : e.a;
+    const Vector3 ahead = std::cos(alpha) * t - sine * e.b;
+    // Opposite b all ways lead back.
+    constexpr double far_enough = 1e-6;
+    const double stretch = sine > far_enough ? alpha / sine : 1;
+    gap = alpha * e.a.dot(t);
+    slope = e.a.dot(t) * ahead + stretch * (e.a - e.a.dot(ahead) * ahead);
+  }
+};
+
 }  // namespace
 
 LoopPaths::LoopPaths(const Model& model, Terms terms)
@@ -69,7 +88,7 @@ void LoopPaths::gaps(std::span<const double> y, std::span<double> gaps, std::byt
     const auto [F, M] = moving(loop, work);
     const Vector3 r = F.R.transpose() * (M.position - F.position);
     const Matrix3 R = F.R.transpose() * M.R;
-    const bool turn = held == Held::turn && loop.directions == 3;
+    const bool turn = held == Held::turn && loop.directions == 3, tilt = held == Held::turn && loop.directions == 2;
     Vector3 theta = Vector3::Zero();
     if (turn) {
       const Eigen::AngleAxisd turned(R);
@@ -78,6 +97,8 @@ void LoopPaths::gaps(std::span<const double> y, std::span<double> gaps, std::byt
     for (const ClosingEquation& e : loop.node->equations()) {
       if (e.of_directions && turn)
         *g++ = length_ * e.b.cross(e.a).dot(theta);
+      else if (e.of_directions && tilt)
+        *g++ = length_ * Tilt(e, R).gap;
       else
         *g++ = e.of_directions ? length_ * (e.a.dot(R * e.b) - e.value) : e.a.dot(r) - e.value;
     }
@@ -131,10 +152,13 @@ Wrench LoopPaths::on_b(std::size_t index, std::span<const double> multipliers, s
   std::size_t first = 0;
   for (std::size_t l = 0; l < index; ++l) first += loops_[l].node->equations().size();
   const auto [F, M] = moving(loops_[index], work);
-  const Matrix3& R_b = held == Held::turn && loops_[index].directions == 3 ? F.R : M.R;
+  const bool turn = held == Held::turn && loops_[index].directions == 3;
+  const bool tilt = held == Held::turn && loops_[index].directions == 2;
+  const Matrix3& R_b = turn ? F.R : M.R;
   Wrench on_b;
   for (const ClosingEquation& e : loops_[index].node->equations()) {
-    const Vector3 d = F.R * e.a * multipliers[first++];
+    const Vector3 a = e.of_directions && tilt ? Tilt(e, F.R.transpose() * M.R).slope : e.a;
+    const Vector3 d = F.R * a * multipliers[first++];
     if (e.of_directions) {
       on_b.moment += length_ * (R_b * e.b).cross(d);
     } else {

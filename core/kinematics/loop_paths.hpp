@@ -17,10 +17,12 @@ namespace withy {
 ///   of directions  ġ = ℓ (ω_M − ω_F) · (f × d)                  and the moment ℓ f × d on b, its opposite on a.
 class LoopPaths {
  public:
-  /// What stands for the gaps of a hinge that holds all three directions.
+  /// What stands for the gaps of hinges that hold two directions or all three.
   enum class Held {
     equations,  ///< g as above, which some turns by half and by a third of a circle solve too
-    turn  ///< ℓ (b × a) · θ, θ the rotation vector of R_FM in F, and ω_FM for its rate: equal near the hinge's pose
+    /// Of three, ℓ (b × a) · θ, θ the rotation vector of R_FM in F, and ω_FM for its rate; of two, which hold an axis,
+    /// ℓ a · θ' with θ' the turn that is left for that axis, along its way. Equal to g near the hinge's pose.
+    turn
   };
   /// `terms` as in FramePaths. The model must outlive the paths.
   LoopPaths(const Model& model, Terms terms);

@@ -20,9 +20,10 @@ namespace {
 using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Free = std::vector<Eigen::Index>;
 
-bool holds_all_directions(const LoopClosure& loop) {
+/// Whether it holds an axis or all directions, so that half a turn solves its equations too.
+bool holds_directions(const LoopClosure& loop) {
   const auto& all = loop.equations();
-  return std::count_if(all.begin(), all.end(), [](const ClosingEquation& e) { return e.of_directions; }) == 3;
+  return std::count_if(all.begin(), all.end(), [](const ClosingEquation& e) { return e.of_directions; }) >= 2;
 }
 
 /// A state on its way to closure.
@@ -44,8 +45,7 @@ class Assembler {
     for (const ModelRate& rate : hinge_rates(model)) slides_[rate.speed] = !rate.angular;
     for (const Slot& modes : model.layout().bodies)
       for (std::size_t k = modes.speed; k < modes.speed + modes.speeds; ++k) slides_[k] = true, bound_reaches_[k] = 1;
-    for (const LoopClosure* loop : loops_of(model))
-      holds_directions_ = holds_directions_ || holds_all_directions(*loop);
+    for (const LoopClosure* loop : loops_of(model)) holds_directions_ = holds_directions_ || holds_directions(*loop);
     look();
   }
 
@@ -141,17 +141,19 @@ class Assembler {
   /// The method of Levenberg and Marquardt: where Newton's goes to and fro beside a state in which J loses rank, it
   /// goes past.
   void descend(const Free& free) {
-    constexpr int most = 200;
-    constexpr double least_damping = 1e-12, most_damping = 1e8;
+    constexpr int most = 100;
+    constexpr double least_damping = 1e-12, most_damping = 1e8, least_gain = 1e-6;
     double damping = 1e-2;
     for (int i = 0; i < most && gap() > closed_gap * length_ && damping < most_damping; ++i) {
       const State here = state_;
       const double before = gaps_.squaredNorm();
-      const Eigen::VectorXd change = smallest(free, gaps_, damping);
+      const Eigen::VectorXd change = damped(free, damping);
       if (!change.allFinite()) break;
       move(part_of(change) * change);
-      if (gaps_.squaredNorm() < before) {
+      const double now = gaps_.squaredNorm();
+      if (now < before) {
         damping = std::max(damping / 5, least_damping);
+        if (now > (1 - least_gain) * before) break;
       } else {
         state_ = here;
         look();
@@ -179,26 +181,33 @@ class Assembler {
     loops_.see(state_.y, gaps, {rates_.data(), static_cast<std::size_t>(rates_.size())}, J, work_);
   }
   /// The change of free speeds with J change = −missing, or as near as they come to it, that is the smallest in M.
-  /// \param damping of what it changes, over the mean square of J in M: then it is smaller, and leaves some
-  [[nodiscard]] Eigen::VectorXd smallest(const Free& free, const Eigen::VectorXd& missing, double damping = 0) const {
+  [[nodiscard]] Eigen::VectorXd smallest(const Free& free, const Eigen::VectorXd& missing) const {
+    return in_mass(free, [&](const Eigen::MatrixXd& S) -> Eigen::VectorXd {
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+      solver.setThreshold(1e-9);
+      solver.compute(S);
+      return solver.solve(-missing);
+    });
+  }
+  /// The change for which the gaps that it leaves and its own size in M, times the damping and the mean square of the
+  /// rows, are least together.
+  [[nodiscard]] Eigen::VectorXd damped(const Free& free, double damping) const {
+    return in_mass(free, [&](const Eigen::MatrixXd& S) -> Eigen::VectorXd {
+      Eigen::MatrixXd A = S * S.transpose();
+      A.diagonal().array() += damping * A.trace() / static_cast<double>(A.rows());
+      return S.transpose() * A.llt().solve(-gaps_);
+    });
+  }
+  /// A change of free speeds. \param solve gives it in coordinates in which M is one, of J in these
+  template <class Solve>
+  [[nodiscard]] Eigen::VectorXd in_mass(const Free& free, Solve&& solve) const {
     const DenseSystem system = equations_.system(state_.time, state_.y);
     const auto n = static_cast<Eigen::Index>(system.size);
     const Eigen::MatrixXd M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n)(free, free);
     const Eigen::LLT<Eigen::MatrixXd> factor(M);
     const Eigen::MatrixXd S = factor.matrixL().solve(J_(Eigen::all, free).transpose()).transpose();
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(n), least;
-    const Eigen::VectorXd wanted = -missing;
-    if (damping > 0) {
-      Eigen::MatrixXd A = S * S.transpose();
-      A.diagonal().array() += damping * A.trace() / static_cast<double>(A.rows());
-      least = S.transpose() * A.llt().solve(wanted);
-    } else {
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-      solver.setThreshold(1e-9);
-      solver.compute(S);
-      least = solver.solve(wanted);
-    }
-    change(free) = factor.matrixU().solve(least).eval();
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
+    change(free) = factor.matrixU().solve(solve(S)).eval();
     return change;
   }
   void move(const Eigen::VectorXd& change) {
@@ -222,7 +231,7 @@ class Assembler {
   std::vector<double> reaches_;
   std::vector<double> bound_reaches_;  ///< the same, of modes one: beams that close a loop bend far
   std::vector<bool> slides_;           ///< speeds
-  bool holds_directions_ = false;      ///< a hinge of some loop holds all three
+  bool holds_directions_ = false;      ///< a hinge of some loop holds an axis or all three
   bool turns_ = false;                 ///< gaps and rows are those of ClosedLoops::see_turns
   std::optional<std::size_t> turned_over_;
 };
