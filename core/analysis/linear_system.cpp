@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "withy/core/analysis/balance_with_ends.hpp"
+#include "withy/core/analysis/beside_one.hpp"
 #include "withy/core/analysis/unheld.hpp"
 
 namespace withy {
@@ -48,9 +49,6 @@ KnownRoots eigenvalues_with_zeros(const Eigen::MatrixXd& A, double rounding) {
   roots.errors.head(left.rows()) = moved_by_rounding(solver.eigenvectors(), share * size, size);
   return roots;
 }
-
-/// What a number beside one is rounded to, in a matrix of so many rows.
-double beside_one(Eigen::Index rows) { return 2e-16 * static_cast<double>(rows); }
 
 }  // namespace
 

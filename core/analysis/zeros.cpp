@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "withy/core/analysis/balance_with_ends.hpp"
+#include "withy/core/analysis/beside_one.hpp"
 #include "withy/core/analysis/linear_system.hpp"
 #include "withy/core/analysis/unheld.hpp"
 #include "withy/core/analysis/zero_errors.hpp"
@@ -179,9 +180,6 @@ double drop_seen_states(LinearSystem& s) {
   }
   return product;
 }
-
-/// What a number beside one is rounded to, in a matrix of so many rows.
-double beside_one(Eigen::Index rows) { return 2e-16 * static_cast<double>(rows); }
 
 }  // namespace
 
