@@ -33,7 +33,8 @@ struct StepLimit {
   double longest =
       std::numeric_limits<double>::infinity();  ///< step that it may choose: max_step, or between samples [s]
   /// "stability", "accuracy", "given" (by the scene, as fixed steps always are and those that it allows no longer),
-  /// "chosen" (by the integrator, nobody else knows how) or "unknown". Error control that meets the limit goes to and fro about it, so the mean stays a little below.
+  /// "chosen" (by the integrator, nobody else knows how) or "unknown". Error control that meets the limit goes to and
+  /// fro about it, so the mean stays a little below.
   [[nodiscard]] std::string cause() const;
   /// Steps that are chosen go far beyond the limit: what is so fast rests for the most part, or began at the end.
   [[nodiscard]] bool fastest_rests() const;
