@@ -13,8 +13,7 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
   if (none && sweep.none())
     return "\nNothing is free to move: hinges that can move have motions, and no body deforms.\n";
   std::string text;
-  if (!none || !sweep.none())
-    text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep, count));
+  if (!none || !sweep.none()) text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep, count));
   if (const std::string words = study::against_next_text(
           against, !against || against->compared == 1 ? "the lowest frequency"
                    : against->compared == 0           ? "the lowest frequencies"
