@@ -46,8 +46,8 @@ class ColumnTexts {
 class Hdf5Writer final : public Hdf5Recorder {
  public:
   explicit Hdf5Writer(const std::filesystem::path& path) : name_(path.string()) {
-    begin_hdf5();
     expect_memory();
+    begin_hdf5();
     const Hdf5Handle access = latest(), how = plain_when_small();
     file_ = {need(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, how, access)), &H5Fclose};
     write_text(file_, "format", "withy-results/1");
@@ -124,7 +124,8 @@ class Hdf5Writer final : public Hdf5Recorder {
     throw std::system_error(error, std::generic_category(), "cannot write " + name_ + (why.empty() ? "" : ": " + why));
   }
 
-  /// The library does not outlive a lack of memory while it creates a file. \throws std::bad_alloc where that is near
+  /// The library does not outlive a lack of memory while it begins or creates a file. \throws std::bad_alloc where that
+  /// is near
   static void expect_memory() {
     constexpr std::size_t of_a_file = std::size_t{4} << 20;
     ::operator delete(::operator new(of_a_file));
