@@ -14,10 +14,10 @@
 
 namespace withy {
 
-/// Why what a load gives at a state is not added to efforts that stand there, or empty where it is: a sentence without
-/// a full stop that names the load, the speed and the function. BoundLoad::add, DiscretePart::add and
-/// ContinuousPart::add are called on zeros and on other numbers; efforts that are not finite, or differ from one call
-/// to the next, say nothing. \param load index in Model::loads() \param state with the discrete states of a run
+/// Why what a load gives at a state is not added to efforts that stand there, or is not of the state alone; empty where
+/// it is both: a sentence without a full stop that names the load, the speed and the function. BoundLoad::add,
+/// DiscretePart::add and ContinuousPart::add are called on zeros and on other numbers; efforts that are not finite say
+/// nothing. \param load index in Model::loads() \param state with the discrete states of a run
 inline std::string addition_fault(const Model& model, std::size_t load, const State& state) {
   using Efforts = Eigen::ArrayXd;
   const LoadNode& node = model.loads()[load];
@@ -48,11 +48,15 @@ inline std::string addition_fault(const Model& model, std::size_t load, const St
     const double before = 1 + alone.isFinite().select(alone.abs(), 0).sum();
     const Efforts beside = added_to(before), again = added_to(0);
     constexpr double rounding = 1e-6;
-    for (Eigen::Index i = 0; i < alone.size(); ++i)
-      if (alone[i] == again[i] && std::abs(beside[i] - before - alone[i]) > rounding * before)
-        return "load '" + node.name + "' does not add its effort on '" +
-               layout.speed_names[static_cast<std::size_t>(i)] + "' (" + function +
-               "): it sets efforts, and is to add to them";
+    for (Eigen::Index i = 0; i < alone.size(); ++i) {
+      const std::string where = "'" + layout.speed_names[static_cast<std::size_t>(i)] + "' (" + function + "): ";
+      if (std::abs(again[i] - alone[i]) > rounding * before)
+        return "load '" + node.name + "' gives another effort at a second call for the same state on " + where +
+               "what it remembers is to stand in its discrete or continuous states";
+      if (std::abs(beside[i] - before - alone[i]) > rounding * before)
+        return "load '" + node.name + "' does not add its effort on " + where +
+               "it sets efforts, and is to add to them";
+    }
   }
   return {};
 }

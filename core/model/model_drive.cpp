@@ -21,6 +21,8 @@ template <class Part>
 void check_times(const std::string& who, const Part& part) {
   const auto [jumps, end] = plugin_call(who + " does not say when it jumps or ends",
                                         [&] { return std::pair(part.discontinuities(), part.end()); });
+  if (std::isinf(end))
+    throw std::invalid_argument(who + " ends at no finite time; one that has no end of its own says 0");
   if (std::isnan(end) || std::any_of(jumps.begin(), jumps.end(), [](double t) { return std::isnan(t); }))
     throw std::invalid_argument(who + " jumps or ends at a time that is no number");
   const auto behind = std::is_sorted_until(jumps.begin(), jumps.end());

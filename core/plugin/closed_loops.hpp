@@ -85,7 +85,8 @@ class ClosedLoops {
   /// What keeps_rank goes by, at the state where a run begins.
   [[nodiscard]] virtual LoopRank rank_at(std::span<const double> y, Work& work) const = 0;
   /// `see` without rates, where the gaps of a hinge that holds all three directions are ℓ times the turn that is left
-  /// to its pose. That has no zero elsewhere, as the equations have, and J leads the shortest way to it.
+  /// to its pose, and those of one that holds an axis are ℓ times the shortest turn that brings it there. That has no
+  /// zero elsewhere, as the equations have, and J leads the shortest way to it.
   virtual void see_turns(std::span<const double> y, std::span<double> gaps, std::span<double> J,
                          Work& work) const noexcept = 0;
 };

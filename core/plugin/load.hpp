@@ -116,7 +116,8 @@ class ContinuousPart {
   virtual void add_wrenches(const LoadView& /*view*/, std::span<const FrameMotion> /*motions*/,
                             std::span<Wrench> /*wrenches*/) const noexcept {}
   /// Adds the derivatives of `add` and of `rates`; may allocate. \returns false, adding nothing, where it has none: it
-  /// is then differentiated numerically, as its wrenches always are.
+  /// is then differentiated numerically, as its wrenches always are, and as the whole part is where rates change with
+  /// accelerations, for which there is no place here.
   virtual bool add_derivatives(const LoadView& /*view*/, ContinuousDerivatives& /*to*/) const { return false; }
 };
 

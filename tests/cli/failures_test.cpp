@@ -52,6 +52,25 @@ TEST(Failures, AnAccuracyThatCannotBeHadIsRefusedAndWhatCanIsRun) {
   EXPECT_THAT(inspected.out, HasSubstr("without arm.bending_y[10] the condition is"));
 }
 
+TEST(Failures, APluginThatEndsTheProgramIsNamed) {
+  const Folder folder;
+  folder.write("s.yaml",
+               "format: withy/1\ntime: {end: 1}\nbodies:\n  a: {type: rigid, mass: 1}\nhinges:\n"
+               "  h: {type: prismatic, axis: [1, 0, 0], parent: world, child: a}\nloads:\n"
+               "  l: {type: zoo-sudden-end, way: out of order}\n");
+  const std::string plugin = std::string("the plugin ") + WITHY_SUDDEN_END + "/zoo-sudden-end.so has ";
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", "s.yaml", "--out", "out", "--plugins", WITHY_SUDDEN_END});
+    return withy(folder, std::move(more));
+  };
+  const Finished thrown = run({});
+  EXPECT_EQ(thrown.status, 3);
+  EXPECT_THAT(thrown.err, HasSubstr(plugin + "let an exception ('out of order') out of code that must not"));
+  const Finished left = run({"--set", "loads.l.way=exit"});
+  EXPECT_EQ(left.status, 3);
+  EXPECT_THAT(left.err, HasSubstr(plugin + "ended the program by a call of exit()"));
+}
+
 TEST(Failures, NoCommandReplacesWhatItReadsNorAFileThatNobodyNamed) {
   const Folder folder;
   const std::string scene = folder.read("scenes/pendulum.yaml");

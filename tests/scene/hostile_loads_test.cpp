@@ -51,14 +51,16 @@ class BoundBoaster final : public BoundLoad, private DiscretePart {
   void add(double, std::span<const double>, std::span<const double>, std::span<double>,
            std::span<double>) const noexcept override {}
   std::vector<double> discontinuities() const override {
+    if (fault_ == "throws-at-times") throw std::runtime_error("no times");
     if (fault_ == "jumps-back") return {0.25, 0.25, 0.125};
     return {};
   }
-  double end() const override { return 0; }
+  double end() const override { return fault_ == "endless" ? std::numeric_limits<double>::infinity() : 0; }
   void begin(State& state) const override {
     if (fault_ == "fewer") state.y.resize(1);
     if (fault_ == "more") state.y.push_back(0);
     if (fault_ == "late") state.time = 7;
+    if (fault_ == "nowhere") state.y[4] = std::nan("");
   }
   const DiscretePart* discrete() const override { return this; }
   const ContinuousPart* continuous() const override { return continuous_.get(); }
@@ -83,7 +85,11 @@ class BoundBoaster final : public BoundLoad, private DiscretePart {
 class Boaster final : public Load {
  public:
   explicit Boaster(std::string fault) : fault_(std::move(fault)) {}
-  std::unique_ptr<BoundLoad> bind(const Model&) const override { return std::make_unique<BoundBoaster>(fault_); }
+  std::unique_ptr<BoundLoad> bind(const Model&) const override {
+    if (fault_ == "throws-number") throw 42;
+    if (fault_ == "binds-nothing") return nullptr;
+    return std::make_unique<BoundBoaster>(fault_);
+  }
 
  private:
   std::string fault_;
@@ -112,6 +118,16 @@ class HostileLoads : public SceneTest {
 };
 
 const std::string who = "s.yaml:6:3: /loads/l: load 'l' ";
+
+TEST_F(HostileLoads, ThatAreNotBoundAreReported) {
+  EXPECT_EQ(load("binds-nothing"), who + "cannot be bound and does not say why");
+  EXPECT_EQ(load("throws-number"), who + "cannot be bound: it throws what is no exception of C++");
+}
+
+TEST_F(HostileLoads, WithoutAFiniteEndAreReported) {
+  EXPECT_EQ(load("throws-at-times"), who + "does not say when it jumps or ends: no times");
+  EXPECT_EQ(load("endless"), who + "ends at no finite time; one that has no end of its own says 0");
+}
 
 TEST_F(HostileLoads, WhoseClocksHaveNoPeriodAreReported) {
   const std::string need = " s; need a finite period, or 0 where no clock renews it";
@@ -148,6 +164,7 @@ TEST_F(HostileLoads, WhoseStatesCannotBeReadBackByTheirNamesAreReported) {
 TEST_F(HostileLoads, ThatBeginWithAnotherStateAreReported) {
   EXPECT_EQ(load("fewer"), who + "does not begin: it leaves 1 numbers in the state where there are 16");
   EXPECT_EQ(load("more"), who + "does not begin: it leaves 17 numbers in the state where there are 16");
+  EXPECT_EQ(load("nowhere"), who + "has the simulation begin where a coordinate is nan");
   EXPECT_EQ(load("late"), who + "does not begin: it sets the time to 7 s, which the scene says ('initial')");
 }
 

@@ -36,50 +36,6 @@ class Lump final : public Body {
   bool has_root_;
 };
 
-/// A load that is bound to nothing.
-class Unbound final : public Load {
- public:
-  std::unique_ptr<BoundLoad> bind(const Model&) const override { return nullptr; }
-};
-
-enum class Deed { throws_number, throws_at_times, begins_nowhere };
-
-/// A load that does nothing, but for one deed.
-class Misbehaving final : public Load {
- public:
-  explicit Misbehaving(Deed deed) : deed_(deed) {}
-  std::unique_ptr<BoundLoad> bind(const Model&) const override {
-    if (deed_ == Deed::throws_number) throw 42;
-    return std::make_unique<Bound>(deed_);
-  }
-
- private:
-  class Bound final : public BoundLoad {
-   public:
-    explicit Bound(Deed deed) : deed_(deed) {}
-    std::size_t scratch() const override { return 0; }
-    void add(double, std::span<const double>, std::span<const double>, std::span<double>,
-             std::span<double>) const noexcept override {}
-    std::vector<double> discontinuities() const override {
-      if (deed_ == Deed::throws_at_times) throw std::runtime_error("no times");
-      return {};
-    }
-    double end() const override { return 0; }
-    void begin(State& state) const override {
-      if (deed_ == Deed::begins_nowhere) state.y[4] = std::numeric_limits<double>::quiet_NaN();
-    }
-
-   private:
-    Deed deed_;
-  };
-  Deed deed_;
-};
-
-template <Deed deed>
-std::unique_ptr<Load> misbehaving(const Value&, const MakeContext&) {
-  return std::make_unique<Misbehaving>(deed);
-}
-
 /// A body with one mistake in what it says of its stations.
 class Misplaced final : public Body {
  public:
@@ -260,21 +216,6 @@ class HostilePlugins : public SceneTest {
       std::fesetround(FE_UPWARD);
       return std::make_unique<Lump>(1, true);
     });
-    Plugin<Load> unbound;
-    unbound.id = "unbound";
-    unbound.make = [](const Value&, const MakeContext&) -> std::unique_ptr<Load> {
-      return std::make_unique<Unbound>();
-    };
-    e.add(std::move(unbound));
-    const auto add_load = [&](const char* id, auto make) {
-      Plugin<Load> load;
-      load.id = id;
-      load.make = make;
-      e.add(std::move(load));
-    };
-    add_load("throws-number", &misbehaving<Deed::throws_number>);
-    add_load("throws-at-times", &misbehaving<Deed::throws_at_times>);
-    add_load("begins-nowhere", &misbehaving<Deed::begins_nowhere>);
     e.add(faulty_plugin<Body, Misplaced>("misplaced"));
     e.add(faulty_plugin<Body, Unsized>("unsized"));
     e.add(faulty_plugin<Sensor, Mistaken>("mistaken"));
@@ -333,20 +274,6 @@ TEST_F(HostilePlugins, ThatChangeTheArithmeticAreRefusedAndItIsRestored) {
     EXPECT_THAT(e.what(), testing::StartsWith("body 'rounds' of test changes the rounding mode"));
   }
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
-}
-
-TEST_F(HostilePlugins, ThatBindNothingAreReported) {
-  EXPECT_EQ(problems(with("type: lump") + "loads:\n  l: {type: unbound}\n", registry),
-            "s.yaml:8:3: /loads/l: load 'l' cannot be bound and does not say why");
-}
-
-TEST_F(HostilePlugins, WhoseLoadsThrowWhileTheyAreBoundAreReportedAtTheLoad) {
-  const auto load = [&](const std::string& type) {
-    return problems(with("type: lump") + "loads:\n  l: {type: " + type + "}\n", registry);
-  };
-  EXPECT_EQ(load("throws-number"),
-            "s.yaml:8:3: /loads/l: load 'l' cannot be bound: it throws what is no exception of C++");
-  EXPECT_EQ(load("throws-at-times"), "s.yaml:8:3: /loads/l: load 'l' does not say when it jumps or ends: no times");
 }
 
 TEST_F(HostilePlugins, WhoseStationsThrowOrAreMissingAreReportedAtTheBody) {
@@ -415,11 +342,6 @@ TEST_F(HostilePlugins, WhoseFunctionsAreNotAsTheySayAreReportedAtTheFamily) {
   EXPECT_THAT(family("none"), testing::EndsWith("/family/name: " + made + "there are 0, where 1 are asked for"));
   EXPECT_THAT(family("slope"), testing::HasSubstr(made + "function 1 has the slope "));
   EXPECT_THAT(family("waves"), testing::HasSubstr(made + "their greatest wave number is 2 1/m, and they vary faster"));
-}
-
-TEST_F(HostilePlugins, WhoseLoadsBeginWhereThereIsNoNumberAreReportedAtTheLoad) {
-  EXPECT_EQ(problems(with("type: lump") + "loads:\n  l: {type: begins-nowhere}\n", registry),
-            "s.yaml:8:3: /loads/l: load 'l' has the simulation begin where a coordinate is nan");
 }
 
 TEST_F(HostilePlugins, ThatMakeImpossibleBodiesAreReported) {

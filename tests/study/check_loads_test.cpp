@@ -85,6 +85,7 @@ class BoundSpring final : public BoundLoad {
   std::size_t scratch() const override { return 0; }
   void add(double, std::span<const double> x, std::span<const double>, std::span<double> efforts,
            std::span<double>) const noexcept override {
+    if (fault_ == "remembers") efforts[0] += 0.1 * ++calls_;
     efforts[0] = (fault_ == "sets" ? 0 : efforts[0]) - (is_stiff(x[0]) ? 6 * x[0] - 3 * kink : 3 * x[0]);
   }
   bool add_derivatives(double, std::span<const double> x, std::span<const double>,
@@ -107,6 +108,7 @@ class BoundSpring final : public BoundLoad {
   std::string fault_;
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<Relay> relay_;
+  mutable int calls_ = 0;
 };
 
 class Spring final : public Load {
@@ -281,6 +283,13 @@ TEST(CheckLoads, ThatSetTheirEffortsAreRefusedAtTheirPlace) {
     EXPECT_EQ(said_of("filter-sets", run), refusal("ContinuousPart::add"));
   }
   EXPECT_EQ(said_of("relay-sets", true), refusal("DiscretePart::add")) << "small motions refuse what switches";
+}
+
+TEST(CheckLoads, ThatRememberCallsAreRefusedAtTheirPlace) {
+  for (const bool run : {true, false})
+    EXPECT_EQ(said_of("remembers", run),
+              "/loads/l: load 'l' gives another effort at a second call for the same state on 'h.0' (BoundLoad::add): "
+              "what it remembers is to stand in its discrete or continuous states");
 }
 
 /// The body of 2 kg: u̇ = (−3 x − 2 z) / 2, ż = x − z + u̇, where add_derivatives has no place for u̇.
