@@ -10,7 +10,7 @@ namespace {
 std::string run_of_modes_text(const study::ModesOf& run, const std::optional<study::AgainstNext>& against,
                               const study::Sweep& sweep, std::size_t count, bool poles) {
   const bool none = run.points.front().modes.empty();
-  if (none && sweep.none())
+  if (none && sweep.none() && run.points.front().problem.empty())
     return "\nNothing is free to move: hinges that can move have motions, and no body deforms.\n";
   std::string text;
   if (!none || !sweep.none()) text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep, count));

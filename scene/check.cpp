@@ -43,6 +43,11 @@ bool depends_on_hinge(const ParameterSpec& spec) {
   return depends(spec.unit) || std::any_of(spec.columns.begin(), spec.columns.end(), depends);
 }
 
+/// A unit with a signal's in the place of that of an angle.
+std::string of_signal(std::string unit, const std::string& signal) {
+  return unit == "rad" ? signal : unit.replace(unit.find("rad"), 3, '(' + signal + ')');
+}
+
 /// The first name of a list, or the one that there is; empty where there is none.
 std::string first_name(const Value* names) {
   if (names == nullptr) return {};
@@ -104,12 +109,20 @@ std::string Checker::unit_here(const std::string& unit) const {
   const auto [measured, driven, signal] = subject_;
   const std::string turning = unit_at_hinge(unit, false);
   const bool effort = turning.starts_with("N m"), gain = effort && turning.find("rad") != std::string::npos;
-  if (unit == "rad|m" && !signal.empty()) return signal;
+  if (!signal.empty() && turning.find("rad") != std::string::npos)
+    return gain ? gain_of_signal(turning.substr(3), signal, driven) : of_signal(turning, signal);
   const Moves one = effort ? driven : measured;
   if (one == Moves::either || (gain && measured == Moves::either)) return unit;
   if (!gain || measured == driven) return unit_at_hinge(unit, one == Moves::sliding);
   // A force for an angle, or a torque for a length.
   return driven == Moves::sliding ? "N" + turning.substr(3) : "N m" + unit_at_hinge(unit, true).substr(1);
+}
+
+/// The unit of a gain, which is that of an effort and then `per` an angle, for a signal in its own unit.
+std::string Checker::gain_of_signal(const std::string& per, const std::string& signal, Moves driven) {
+  const std::string rest = of_signal(per, signal);
+  if (driven == Moves::either) return "N m" + rest + "|N" + rest;
+  return (driven == Moves::sliding ? "N" : "N m") + rest;
 }
 
 bool Checker::has_unit(const Value& value, const ParameterSpec& spec, bool slides) const {

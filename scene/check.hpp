@@ -151,6 +151,7 @@ class Checker {
   [[nodiscard]] std::string unit_of_signal(const Value& names) const;
   [[nodiscard]] std::optional<Subject> subject(const Value& map) const;
   [[nodiscard]] std::string unit_here(const std::string& unit) const;
+  [[nodiscard]] static std::string gain_of_signal(const std::string& per, const std::string& signal, Moves driven);
   std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> mode_family(const Value& value) const;
   std::optional<Value> formulation(const Value& value) const;

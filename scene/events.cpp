@@ -126,11 +126,11 @@ void SceneEvents::expect_locks(Model& model) const {
     if (const int hinge = model.hinge(name); hinge >= 0) model.expect_lock(static_cast<std::size_t>(hinge));
 }
 
-/// Whether the value that an event's number passes has its unit.
-bool SceneEvents::measures(const std::string& event, const Watched& number) const {
-  const Value* value = document_.root.at("events").at(event).find("value");
-  if (value == nullptr || value->kind() != Value::Kind::text) return true;
-  return checker_.check(*value, withy::number("value", number.unit.empty() ? "1" : number.unit, "")).has_value();
+std::optional<double> SceneEvents::passed_value(const std::string& event, const Watched& number) const {
+  const Value* written = document_.root.at("events").at(event).find("value");
+  if (written == nullptr || written->kind() != Value::Kind::text) return events_.at(event).number_at("value");
+  const auto value = checker_.check(*written, withy::number("value", number.unit.empty() ? "1" : number.unit, ""));
+  return value ? std::optional(value->number()) : std::nullopt;
 }
 
 /// What a load is given in the scene with what an event sets of it.
@@ -340,7 +340,6 @@ ActingEvent SceneEvents::acting_event(const Model& model, const std::string& nam
   event.when = given.has("at") ? When::at : given.has("after") ? When::after : When::passes;
   event.element = number.element;
   event.column = number.column;
-  event.value = given.number_at("value");
   event.direction = direction_of(given);
   if (event.when == When::at) event.time = given.number_at("at");
   event.delay = given.number_at("delay");
@@ -359,9 +358,11 @@ void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, s
   std::vector<std::size_t> at_limits;  // events that watch them, one each
   for (const auto& [name, given] : events_.members()) {
     const std::optional<Watched> number = watched(model, outputs, given, checker_);
-    if (!number || !measures(name, *number)) continue;
+    if (!number) continue;
+    const std::optional<double> passed = passed_value(name, *number);
+    if (!passed) continue;
     if (!acts(name, given, *number)) {
-      const auto function = [index = static_cast<std::size_t>(number->element), value = given.number_at("value")](
+      const auto function = [index = static_cast<std::size_t>(number->element), value = *passed](
                                 double, std::span<const double> y) { return y[index] - value; };
       plain.push_back({name, function, direction_of(given), given.at("stop").boolean()});
       continue;
@@ -372,6 +373,7 @@ void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, s
       if (limit == nullptr) continue;
     }
     ActingEvent event = acting_event(model, name, given, *number);
+    event.value = *passed;
     if (limit != nullptr) {
       event.column = limits.size();
       at_limits.push_back(plan.events.size());

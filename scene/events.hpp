@@ -36,7 +36,8 @@ class SceneEvents {
 
  private:
   [[nodiscard]] bool acts(const std::string& name, const Value& event, const Watched& number) const;
-  [[nodiscard]] bool measures(const std::string& event, const Watched& number) const;
+  /// What the number passes; nothing, with a diagnostic, where that is given in another unit.
+  [[nodiscard]] std::optional<double> passed_value(const std::string& event, const Watched& number) const;
   /// All but the number of a limit, which has no column yet.
   [[nodiscard]] ActingEvent acting_event(const Model& model, const std::string& name, const Value& given,
                                          const Watched& number) const;

@@ -283,14 +283,14 @@ AnyQuantity read_any_quantity(std::string_view given) {
   return {unit.unit->to_si(number), unit.unit->dimension, {}};
 }
 
-QuantityReading read_quantity(std::string_view given, std::string_view si_unit) {
+QuantityReading read_quantity(std::string_view given, std::string_view wanted) {
   const std::string plain = with_plain_spaces(given);
   const std::string_view text = plain;
   const AnyQuantity read = read_any_quantity(text);
   if (!read.value) return {{}, read.problem};
-  const UnitReading expected = read_unit(si_unit.empty() ? "1" : si_unit);
-  if (!expected.unit) return {{}, fmt::format("units are not known here: write a number in {}", si_unit)};
-  if (read.dimension == expected.unit->dimension) return {read.value, {}};
+  const UnitReading expected = read_unit(wanted.empty() ? "1" : wanted);
+  if (!expected.unit) return {{}, fmt::format("units are not known here: write a number in {}", wanted)};
+  if (read.dimension == expected.unit->dimension) return {expected.unit->from_si(*read.value), {}};
   double number = 0;
   std::string_view unit = text.substr(leading_number(text, number));
   while (unit.starts_with(' ')) unit.remove_prefix(1);

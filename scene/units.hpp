@@ -20,6 +20,7 @@ struct Unit {
   Dimension dimension{};
 
   [[nodiscard]] double to_si(double x) const { return x * multiply / divide; }
+  [[nodiscard]] double from_si(double x) const { return multiply == divide ? x : x * divide / multiply; }
 };
 
 /// A unit, or in `problem` why the text is none (with the nearest unit that is known).
@@ -32,14 +33,15 @@ struct UnitReading {
 /// Factors are separated by a space, `*` or `·`; SI prefixes p … G go before SI units.
 UnitReading read_unit(std::string_view text);
 
-/// A number with a unit, in SI units, or why the text is none.
+/// A number in the unit that was asked for, or why the text is none.
 struct QuantityReading {
   std::optional<double> value;
   std::string problem;
 };
 
-/// Reads a number and its unit, which must have the dimension of `si_unit` (as "N m^2"; "1" or "": a ratio).
-QuantityReading read_quantity(std::string_view text, std::string_view si_unit);
+/// Reads a number and its unit, which must have the dimension of `unit` (as "N m^2"; "1" or "": a ratio), as a number
+/// in that: the SI number where `unit` is of SI, and 30 for "0.5236 rad" where a signal is in "deg".
+QuantityReading read_quantity(std::string_view text, std::string_view unit);
 
 /// A number with a unit of any kind, in SI units.
 struct AnyQuantity {

@@ -279,13 +279,13 @@ State displaced_anyhow(const Configuration& c, State state, double times) {
 
 Differenced slopes_anyhow(const Configuration& c, const State& state,
                           const std::function<Eigen::VectorXd(const State&)>& reading) {
-  constexpr int levels = 12;  // as adaptive_difference
   const State displaced = displaced_anyhow(c, state);
   double place = 0;  // in displacements: no step is to be lost in a coordinate
   for (std::size_t i = 0; i < state.y.size(); ++i)
     if (const double by = std::abs(displaced.y[i] - state.y[i]); by > 0)
       place = std::max(place, std::abs(state.y[i]) / by);
-  return refine_difference([&](double times) { return reading(displaced_anyhow(c, state, times)); }, 1, levels, place);
+  return refine_difference([&](double times) { return reading(displaced_anyhow(c, state, times)); }, 1,
+                           most_refinements, place);
 }
 
 Eigen::VectorXd other_slopes(const Differenced& a, const Differenced& b) {

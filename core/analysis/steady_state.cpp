@@ -217,9 +217,11 @@ Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& stat
   const Eigen::VectorXd residual = dynamics.residual(state.time, state.y, a);
   // No factors of what is not finite say anything of the masses.
   if (!M.allFinite() || !residual.allFinite()) throw std::domain_error("the derivatives at this state are not finite");
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
+  // Masses of modes and inertias of small bodies may differ by many powers of ten.
+  const Eigen::VectorXd scale = unit_inertias(M.diagonal().cwiseAbs());
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(scale.asDiagonal() * M * scale.asDiagonal());
   if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
-  a(free) = -lu.solve(residual(free));
+  a(free) = -scale.cwiseProduct(lu.solve(scale.cwiseProduct(residual(free))));
   return dynamics.whole(state.y, a);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/course_of_time.hpp"
@@ -325,16 +326,25 @@ class BoundSwitchedLoad final : public EffortlessLoad,
   std::unique_ptr<SwitchedInput> input_;
 };
 
-/// Whether two forms have the same states and act at the same frames.
-bool alike(const BoundLoad& a, const BoundLoad& b) {
+/// What another form of a load has otherwise that no event can change; empty where it is all the same.
+std::string unlike(const BoundLoad& a, const BoundLoad& b) {
   const auto same = [](const FrameIndex& x, const FrameIndex& y) { return x.body == y.body && x.frame == y.frame; };
   const auto period = [](const BoundLoad& load) { return load.discrete() == nullptr ? 0 : load.discrete()->period(); };
   const auto switches = [](const BoundLoad& load) {
     return load.discrete() == nullptr ? 0 : load.discrete()->switches();
   };
-  return discrete_states(a) == discrete_states(b) && continuous_states(a) == continuous_states(b) &&
-         period(a) == period(b) && switches(a) == switches(b) &&
-         std::equal(a.frames().begin(), a.frames().end(), b.frames().begin(), b.frames().end(), same);
+  const auto counts = [](std::size_t one, std::size_t other) {
+    return " (" + std::to_string(one) + " numbers, which are " + std::to_string(other) + " then)";
+  };
+  if (!std::equal(a.frames().begin(), a.frames().end(), b.frames().begin(), b.frames().end(), same))
+    return "where the load acts";
+  if (period(a) != period(b)) return "the load's sample";
+  if (discrete_states(a) != discrete_states(b))
+    return "what the load keeps between instants" + counts(discrete_states(a), discrete_states(b));
+  if (continuous_states(a) != continuous_states(b))
+    return "the load's continuous states" + counts(continuous_states(a), continuous_states(b));
+  if (switches(a) != switches(b)) return "at what the load switches";
+  return {};
 }
 
 }  // namespace
@@ -343,9 +353,10 @@ std::unique_ptr<BoundLoad> SwitchedLoad::bind(const Model& model) const {
   Forms forms;
   for (const auto& form : forms_) {
     forms.push_back(form->bind(model));
-    if (!alike(*forms.front(), *forms.back()))
-      throw std::invalid_argument(
-          "an event changes where the load acts, its sample or its states; need a change of its numbers alone");
+    if (const std::string what = unlike(*forms.front(), *forms.back()); !what.empty())
+      throw std::invalid_argument("an event changes " + what +
+                                  "; need a change of numbers that the load has from the start, as of a limit that it "
+                                  "does not reach until then");
     if (dynamic_cast<const ForeignLaw*>(forms.back().get()) != nullptr)
       throw std::invalid_argument("an event cannot switch or change a load whose law is not withy's own");
   }

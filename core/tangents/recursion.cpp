@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "withy/core/tangents/recursion_members.hpp"
 
 namespace withy::analysis {
@@ -22,6 +24,21 @@ struct Size {
   }
 };
 
+/// Bounds of the terms of force_on and moment_on [N, N m], whatever their directions: what turns about an axis of its
+/// own needs none, but rounding of the axis's direction is to be seen against what others would. \param carried
+/// acceleration of the body's frame, bounded likewise
+double bound_of_force(const Turning<double>& t, double carried, const PointMotionOf<double>& m, double mass,
+                      const Eigen::VectorXd& q_ddot) {
+  return mass * (carried + t.turn.norm() * m.r.norm() + t.twice.norm() * m.r_rate.norm() + m.r_bias.norm() +
+                 (m.P * q_ddot).norm());
+}
+
+double bound_of_moment(const Turning<double>& t, const PointMotionOf<double>& m, const Matrix3& inertia,
+                       const Eigen::VectorXd& q_ddot) {
+  const double w = t.w.norm() + m.w_rate.norm();
+  return inertia.norm() * (t.alpha.norm() + w * w + m.w_bias.norm() + (m.W * q_ddot).norm());
+}
+
 }  // namespace
 
 Eigen::VectorXd sizes_of(const Recursion<double>& tree, const std::vector<AppliedWrench<double>>& wrenches) {
@@ -29,17 +46,24 @@ Eigen::VectorXd sizes_of(const Recursion<double>& tree, const std::vector<Applie
   const auto& frames = tree.frames_;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.speeds));
   std::vector<Size> all(frames.size());
+  std::vector<double> carried(frames.size()), turn(frames.size());
   for (std::size_t b = 0; b < frames.size(); ++b) {
     const Eigen::VectorXd& q_ddot = tree.states_[b].q_ddot;
     const Turning<double> t = tree.turning(b);
+    turn[b] = t.turn.norm();
+    carried[b] = t.a.norm();
+    if (const int parent = tree.model_.hinges()[b].parent; parent >= 0) {
+      const auto p = static_cast<std::size_t>(parent);
+      carried[b] = std::max(carried[b], carried[p] + turn[p] * (frames[b].p - frames[p].p).norm());
+    }
     all[b].modes = Eigen::VectorXd::Zero(q_ddot.size());
     tree.for_mass(
         b,
         [&](const PointMotionOf<double>& m, double mass) {
-          all[b].add(Recursion<double>::force_on(t, m, mass, q_ddot).norm(), 0, m.r.norm(), m);
+          all[b].add(bound_of_force(t, carried[b], m, mass, q_ddot), 0, m.r.norm(), m);
         },
         [&](const PointMotionOf<double>& m, const Matrix3& inertia) {
-          all[b].add(0, Recursion<double>::moment_on(t, m, inertia, q_ddot).norm(), 0, m);
+          all[b].add(0, bound_of_moment(t, m, inertia, q_ddot), 0, m);
         });
   }
   for (const AppliedWrench<double>& w : wrenches) {

@@ -300,7 +300,7 @@ void enroll_filter(Enrollment& enrollment) {
       &make_quantizer);
   add("noise", "Normal noise, drawn anew at each sample: added to a signal, or alone",
       {number("deviation", "1", "standard deviation, in the signal's unit").least(0),
-       integer("seed", "of the random numbers").least(0).otherwise(0.0)},
+       integer("seed", "of the random numbers; loads of one seed have the same").least(0).otherwise(0.0)},
       &make_noise);
   add("over-time", "Integral, mean, root mean square or extreme of a signal since the start",
       {text("what", "which of these").one_of({"integral", "mean", "rms", "min", "max"})}, &make_over_time);

@@ -97,6 +97,28 @@ loads: {push: {type: hinge-effort, hinge: slide, value: 1}}
   EXPECT_NEAR(*result.parameters[0].deviation / std::sqrt(squares / 9 / slopes), 1, 2e-6);
 }
 
+// x = t²/2m, told in millimetres.
+TEST(Tune, OutputsInUnitsOfTheirOwnAreComparedInThese) {
+  const TuneFolder folder;
+  for (const auto& [unit, scale] : {std::pair("mm", 1e3), std::pair("m", 1.0), std::pair("cm", 1e2)}) {
+    std::string text = fmt::format("t[s],place[{}]\n", unit);
+    for (int i = 1; i <= 10; ++i) text += fmt::format("{},{}\n", 0.1 * i, scale * 0.01 * i * i / 5);
+    folder.write("data.csv", text);
+    TuneQuestion question;
+    question.parameters = {"bodies.block.mass"};
+    const TuneResult result = folder.tuned(question, R"(format: withy/1
+integrator: {name: dopri5, rtol: 1e-8, atol: 1e-10}
+time: {end: 1, output: 0.1}
+bodies: {block: {type: rigid, mass: 2}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+loads: {push: {type: hinge-effort, hinge: slide, value: 1}}
+outputs: {of: {type: hinge, hinge: slide}, place: {type: expression, value: 1000 * of.position, unit: mm}}
+)");
+    ASSERT_TRUE(result.converged()) << result.trouble;
+    EXPECT_NEAR(result.parameters[0].value, 2.5, 1e-6) << unit;
+  }
+}
+
 TEST(Tune, KeepsUnitsAndTheSameBitsWhateverTheJobs) {
   const TuneFolder folder;
   folder.measure({}, 1e-3, 3);

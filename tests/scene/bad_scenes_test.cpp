@@ -337,6 +337,10 @@ const BadScene bad_scenes[] = {
     {"ratios_of_modes_that_are_none", "damping_ratio: 0.01", "damping: {ratios: [[0, 0.1], [0.4, 0.2], [2, 0.3]]}",
      "16:25: /bodies/boom/damping/ratios/0/0: got 0; need the number of a mode, a whole number from 1\n"
      "s.yaml:16:35: /bodies/boom/damping/ratios/1/0: got 0.4; need the number of a mode, a whole number from 1"},
+    {"event_that_gives_a_load_a_part_it_has_not", "loads:",
+     "events: {e: {at: 0.1, do: {set: loads.servo.limit=3}}}\nloads:\n"
+     "  servo: {type: pid, hinge: shoulder, proportional: 1, sample: 0.01}",
+     "22:3: /loads/servo: an event changes what the load keeps between instants ("},
     {"load_component_out_of_range", "hinge: shoulder,", "hinge: shoulder, component: 1,", "21:3: /loads/motor: "},
     {"bodies_as_a_list", "bodies:\n  hub:\n    type: rigid", "bodies: [hub]\nlimits:\n  hub:\n    type: rigid",
      "4:9: /bodies: got a list of 1; need a map of names"},

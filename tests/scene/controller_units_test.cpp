@@ -23,7 +23,9 @@ hinges:
   x: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart)" +
                             reflected + R"(}
   c: {type: revolute, axis: [0, 0, 1], parent: cart, child: arm}
-outputs: {place: {type: frame, of: arm}}
+outputs:
+  place: {type: frame, of: arm}
+  degrees: {type: expression, value: place.x * 57.3, unit: deg}
 loads:
   u: {type: input, hinge: x}
   v: {type: input, hinge: c}
@@ -52,6 +54,11 @@ TEST(ControllerUnits, AreThoseOfWhatIsMeasuredAndDriven) {
       {"of: c, to: v", "proportional: 3 Nm/rad", "proportional: 3 N/m"},
       {"of: x.rate, to: u", "reference: 3 m/s", "reference: 3 rad/s"},
       {"of: place.x, to: u", "reference: 30 mm", "reference: 30 deg"},
+      {"of: degrees, hinge: c", "reference: 30 deg", "reference: 30 mm"},
+      {"of: degrees, hinge: c", "proportional: 3 Nm/deg", "proportional: 3 Nm/m"},
+      {"of: degrees, hinge: x", "derivative: 3 N s/deg", "derivative: 3 Nm s/deg"},
+      {"of: degrees, to: nothing", "integral: 3 N/(deg s)", "integral: 3 N/s"},
+      {"of: x.rate, to: v", "proportional: 3 Nm s/m", "proportional: 3 Nm/m"},
       {"hinge: x", "reference: 30 mm", "reference: 30 deg"},
       {"hinge: c", "limit: 3 Nm", "limit: 3 N"},
   };

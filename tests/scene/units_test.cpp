@@ -79,6 +79,15 @@ TEST(Quantities, OfDecimalPrefixesAreTheNumbersOneWouldWrite) {
   EXPECT_EQ(*read_quantity("3 g", "kg").value, 0.003);
 }
 
+/// As a signal has that an expression gives in degrees.
+TEST(Quantities, AreNumbersInTheUnitThatIsAskedFor) {
+  EXPECT_EQ(*read_quantity("30 deg", "deg").value, 30);
+  EXPECT_NEAR(*read_quantity("1 rad", "deg").value, 180 / pi, 1e-13);
+  EXPECT_NEAR(*read_quantity("10 rpm", "rpm").value, 10, 1e-14);
+  EXPECT_NEAR(*read_quantity("3 N m/deg", "N m/(deg)").value, 3, 1e-14);
+  EXPECT_EQ(*read_quantity("2 cm", "mm").value, 20);
+}
+
 TEST(Quantities, SayWhatIsWrongWithThem) {
   using testing::HasSubstr;
   const auto problem = [](const char* text, const char* unit) {

@@ -85,6 +85,21 @@ TEST(EventPassages, act_once_each_and_in_turn_downwards_and_upwards) {
   }
 }
 
+// A value with a unit is one of what is watched, which an expression gives in degrees.
+TEST(EventPassages, of_values_with_a_unit_are_those_of_the_signal_in_its_own) {
+  std::string scene = swinging_disc("{name: dopri5, rtol: 1e-9, atol: 1e-11}", "");
+  const std::string sensors = "outputs: {";
+  scene.insert(scene.find(sensors) + sensors.size(),
+               "in_degrees: {type: expression, value: pull.position * 180 / pi, unit: deg}, ");
+  for (const std::string value : {"30", "\"30 deg\"", fmt::format("\"{} rad\"", std::numbers::pi / 6)}) {
+    const ActedRun run(scene + "events: {e: {signal: in_degrees, value: " + value + ", repeat: true}}\n");
+    const std::vector<double> expected = passages(std::numbers::pi / 6, 12);
+    ASSERT_EQ(run.summary.events.size(), expected.size()) << value;
+    for (std::size_t k = 0; k < expected.size(); ++k)
+      EXPECT_NEAR(run.summary.events[k].time, expected[k], 1e-7) << value;
+  }
+}
+
 // An event that waits does not look; those that do are not told more than there is.
 TEST(EventPassages, of_an_event_with_a_delay_act_once_each_and_are_no_passages_of_others) {
   for (const std::string direction : {"both", "down", "up"}) {
