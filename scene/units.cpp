@@ -264,10 +264,6 @@ std::string with_plain_spaces(std::string_view text) {
   return plain;
 }
 
-}  // namespace
-
-namespace {
-
 /// A number with its unit, or why the text is none.
 struct Written {
   double number = 0;
