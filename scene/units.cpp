@@ -264,33 +264,51 @@ std::string with_plain_spaces(std::string_view text) {
   return plain;
 }
 
-}  // namespace
+/// A number with its unit, or why the text is none.
+struct Written {
+  double number = 0;
+  std::optional<Unit> unit;
+  std::string problem;
+};
 
-AnyQuantity read_any_quantity(std::string_view given) {
+Written read_written(std::string_view given) {
   const std::string plain = with_plain_spaces(given);
   const std::string_view text = plain;
-  double number = 0;
-  const std::size_t length = leading_number(text, number);
+  Written read;
+  const std::size_t length = leading_number(text, read.number);
   if (length == 0) {
-    if (!looks_like_number(text)) return {{}, {}, ""};
-    return {{}, {}, "numbers are decimal, without leading zeros, ':' or '_', and within the range of doubles"};
+    if (looks_like_number(text))
+      read.problem = "numbers are decimal, without leading zeros, ':' or '_', and within the range of doubles";
+    return read;
   }
   std::string_view rest = text.substr(length);
   while (rest.starts_with(' ')) rest.remove_prefix(1);
-  if (rest.empty()) return {{}, {}, "a number in quotes is text; write it without quotes or with its unit"};
-  const UnitReading unit = read_unit(rest);
-  if (!unit.unit) return {{}, {}, unit.problem};
-  return {unit.unit->to_si(number), unit.unit->dimension, {}};
+  if (rest.empty()) {
+    read.problem = "a number in quotes is text; write it without quotes or with its unit";
+    return read;
+  }
+  UnitReading unit = read_unit(rest);
+  read.unit = unit.unit;
+  read.problem = std::move(unit.problem);
+  return read;
+}
+
+}  // namespace
+
+AnyQuantity read_any_quantity(std::string_view given) {
+  Written read = read_written(given);
+  if (!read.unit) return {{}, {}, std::move(read.problem)};
+  return {read.unit->to_si(read.number), read.unit->dimension, {}};
 }
 
 QuantityReading read_quantity(std::string_view given, std::string_view wanted) {
-  const std::string plain = with_plain_spaces(given);
-  const std::string_view text = plain;
-  const AnyQuantity read = read_any_quantity(text);
-  if (!read.value) return {{}, read.problem};
+  Written read = read_written(given);
+  if (!read.unit) return {{}, std::move(read.problem)};
   const UnitReading expected = read_unit(wanted.empty() ? "1" : wanted);
   if (!expected.unit) return {{}, fmt::format("units are not known here: write a number in {}", wanted)};
-  if (read.dimension == expected.unit->dimension) return {expected.unit->from_si(*read.value), {}};
+  if (read.unit->dimension == expected.unit->dimension) return {read.unit->to(*expected.unit, read.number), {}};
+  const std::string plain = with_plain_spaces(given);
+  const std::string_view text = plain;
   double number = 0;
   std::string_view unit = text.substr(leading_number(text, number));
   while (unit.starts_with(' ')) unit.remove_prefix(1);

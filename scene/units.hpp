@@ -20,7 +20,11 @@ struct Unit {
   Dimension dimension{};
 
   [[nodiscard]] double to_si(double x) const { return x * multiply / divide; }
-  [[nodiscard]] double from_si(double x) const { return multiply == divide ? x : x * divide / multiply; }
+  /// A number of this unit in another of the same dimension; exact where both are one.
+  [[nodiscard]] double to(const Unit& other, double x) const {
+    if (multiply == other.multiply && divide == other.divide) return x;
+    return other.multiply == other.divide ? to_si(x) : to_si(x) * other.divide / other.multiply;
+  }
 };
 
 /// A unit, or in `problem` why the text is none (with the nearest unit that is known).

@@ -56,7 +56,7 @@ TEST(ControllerUnits, AreThoseOfWhatIsMeasuredAndDriven) {
       {"of: place.x, to: u", "reference: 30 mm", "reference: 30 deg"},
       {"of: degrees, hinge: c", "reference: 30 deg", "reference: 30 mm"},
       {"of: degrees, hinge: c", "proportional: 3 Nm/deg", "proportional: 3 Nm/m"},
-      {"of: degrees, hinge: x", "derivative: 3 N s/deg", "derivative: 3 Nm s/deg"},
+      {"of: degrees, hinge: x", "derivative: 3 N s/deg, filter: 0.1 s", "derivative: 3 Nm s/deg, filter: 0.1 s"},
       {"of: degrees, to: nothing", "integral: 3 N/(deg s)", "integral: 3 N/s"},
       {"of: x.rate, to: v", "proportional: 3 Nm s/m", "proportional: 3 Nm/m"},
       {"hinge: x", "reference: 30 mm", "reference: 30 deg"},

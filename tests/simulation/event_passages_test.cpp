@@ -91,7 +91,8 @@ TEST(EventPassages, of_values_with_a_unit_are_those_of_the_signal_in_its_own) {
   const std::string sensors = "outputs: {";
   scene.insert(scene.find(sensors) + sensors.size(),
                "in_degrees: {type: expression, value: pull.position * 180 / pi, unit: deg}, ");
-  for (const std::string value : {"30", "\"30 deg\"", fmt::format("\"{} rad\"", std::numbers::pi / 6)}) {
+  const std::vector<std::string> values = {"30", "\"30 deg\"", fmt::format("\"{} rad\"", std::numbers::pi / 6)};
+  for (const std::string& value : values) {
     const ActedRun run(scene + "events: {e: {signal: in_degrees, value: " + value + ", repeat: true}}\n");
     const std::vector<double> expected = passages(std::numbers::pi / 6, 12);
     ASSERT_EQ(run.summary.events.size(), expected.size()) << value;

@@ -7,9 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "withy/study/run.hpp"
 #include "withy/tests/study/plugins.hpp"
-#include "withy/tests/study/scenes.hpp"
+#include "withy/tests/study/scene_runs.hpp"
 
 namespace withy::study {
 namespace {

@@ -15,7 +15,7 @@
 #include "withy/study/input_error.hpp"
 #include "withy/study/own_instants.hpp"
 #include "withy/tests/study/plugins.hpp"
-#include "withy/tests/study/scenes.hpp"
+#include "withy/tests/study/scene_runs.hpp"
 
 namespace withy::study {
 namespace {
@@ -47,16 +47,6 @@ TEST(StudyRun, OutputsDoNotDependOnWhatIsMeasuredBeside) {
   static_cast<void>(run(prepared, plugins(), settings));
   ASSERT_EQ(alone.size(), beside.size());
   for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_EQ(alone[i].y, beside[i].y);
-}
-
-CertifiedRun run_of(const std::string& name, const std::vector<std::pair<std::string, Value>>& changes,
-                    const std::string& formulation) {
-  SceneValues values = scene(name);
-  for (const auto& [path, value] : changes) values.set(path, value, "the test");
-  const Prepared prepared = prepare(values.choose_formulation(formulation, "the test"), plugins());
-  RunSettings settings;
-  settings.estimate = Estimate::never;
-  return run(prepared, plugins(), settings);
 }
 
 /// A boom that hangs in its weight with a body on a hinge at its tip, bent at first.
