@@ -88,9 +88,9 @@ TEST(EventPassages, act_once_each_and_in_turn_downwards_and_upwards) {
 // A value with a unit is one of what is watched, which an expression gives in degrees.
 TEST(EventPassages, of_values_with_a_unit_are_those_of_the_signal_in_its_own) {
   std::string scene = swinging_disc("{name: dopri5, rtol: 1e-9, atol: 1e-11}", "");
-  const std::string sensors = "outputs: {";
-  scene.insert(scene.find(sensors) + sensors.size(),
-               "in_degrees: {type: expression, value: pull.position * 180 / pi, unit: deg}, ");
+  const std::string last = "pull: {type: hinge, hinge: axle}";
+  scene.insert(scene.find(last) + last.size(),
+               ", in_degrees: {type: expression, value: pull.position * 180 / pi, unit: deg}");
   const std::vector<std::string> values = {"30", "\"30 deg\"", fmt::format("\"{} rad\"", std::numbers::pi / 6)};
   for (const std::string& value : values) {
     const ActedRun run(scene + "events: {e: {signal: in_degrees, value: " + value + ", repeat: true}}\n");
