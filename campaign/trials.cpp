@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "withy/campaign/derived.hpp"
+#include "withy/campaign/overlaps.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
@@ -20,6 +21,10 @@ Value in_si(const Value& value) {
   if (value.kind() != Value::Kind::text) return value;
   const AnyQuantity read = read_any_quantity(value.text());
   return read.value ? Value(*read.value) : value;
+}
+
+bool is_quantity(const Value& value) {
+  return value.kind() == Value::Kind::text && in_si(value).kind() == Value::Kind::number;
 }
 
 /// Values of a plan, tried together.
@@ -39,7 +44,7 @@ class Trials {
     if (is_taken(trial)) return;
     CaseValues values = first_;
     values[trial.axis] = trial.value;
-    const SceneValues scene = with(std::move(values));
+    const SceneValues scene = with(std::move(values), true, trial.axis);
     try {
       static_cast<void>(made(scene));
     } catch (const SceneError& e) {
@@ -55,9 +60,9 @@ class Trials {
   }
 
  private:
-  SceneValues with(CaseValues values, bool derive = true) const {
+  SceneValues with(CaseValues values, bool derive, std::optional<std::size_t> last = {}) const {
     SceneValues scene = base_;
-    set_values(plan_, tried_.source, std::move(values), derive, scene);
+    set_values(plan_, tried_.source, std::move(values), derive, scene, last);
     return scene;
   }
 
@@ -79,7 +84,9 @@ class Trials {
     const auto beside = [&](CaseValues values, bool derive = true) {
       values[trial.axis] = trial.value;
       if (!takes(values, derive)) return false;
-      tried_.beside[trial.axis] = last_ = std::move(values);
+      last_ = values;
+      CaseValues& kept = tried_.beside[trial.axis];
+      if (kept.empty() || (is_quantity(trial.value) && !is_quantity(*kept[trial.axis]))) kept = std::move(values);
       return true;
     };
     if (beside(first_) || beside(own_)) return true;
@@ -142,13 +149,17 @@ void Problems::raise() const {
   throw SceneError(plan_, std::move(all), origins_);
 }
 
-void set_values(const Plan& plan, const Value& source, CaseValues values, bool derive, SceneValues& scene) {
-  for (std::size_t a = 0; a < values.size(); ++a) {
-    if (!values[a]) continue;
-    set_or_take(scene, plan.axes[a].path, *values[a], origin_of(plan.file, values[a]->place()));
-    values[a] = in_si(*values[a]);
-  }
+void set_values(const Plan& plan, const Value& source, CaseValues values, bool derive, SceneValues& scene,
+                std::optional<std::size_t> last) {
+  const auto set = [&](std::size_t a) {
+    if (values[a]) set_or_take(scene, plan.axes[a].path, *values[a], origin_of(plan.file, values[a]->place()));
+  };
+  for (std::size_t a = 0; a < values.size(); ++a) set(a);
+  const auto is_part = [&](const Axis& axis) { return is_within(axis.path, plan.axes[*last].path); };
+  if (last && std::none_of(plan.axes.begin(), plan.axes.end(), is_part)) set(*last);
   if (!derive) return;
+  for (std::optional<Value>& value : values)
+    if (value) value = in_si(*value);
   for (const Derived& d : plan.derived) {
     const std::optional<double> number = value_of(d, source, values);
     if (number) scene.set(d.path, Value(*number), origin_of(plan.file, d.place));

@@ -2,7 +2,9 @@
 /// Tries the values of a plan in its scene, so that what is wrong is known before the first case runs.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,13 +52,17 @@ std::string origin_of(const std::string& file, const Place& place);
 
 /// Puts values of the axes into a scene, and what follows from them if `derive`: but for formulas that name no number.
 /// \param source as value_of has it
-void set_values(const Plan& plan, const Value& source, CaseValues values, bool derive, SceneValues& scene);
+/// \param last the axis whose place messages name of what several have set, as the elements of an inertia; where there
+/// is none, or another axis leads into it, the last one
+void set_values(const Plan& plan, const Value& source, CaseValues values, bool derive, SceneValues& scene,
+                std::optional<std::size_t> last = {});
 
 /// What came of trials.
 struct Tried {
   SceneSources sources;  ///< of all scenes that could be made
   Value source;          ///< checked values of the scene without what varies
-  /// Of each axis: values of all with which the scene took one of it; empty where none is known.
+  /// Of each axis: values of all with which the scene took its first quantity, or its first value where it has none;
+  /// empty where they are not known.
   std::vector<CaseValues> beside;
 };
 
