@@ -48,7 +48,8 @@ Cases::Cases(const Plan& plan) : plan_(plan), paths_(varied_paths(plan)), apart_
 
 CaseValues Cases::values(std::uint64_t index) const {
   CaseValues values = of_axes(index);
-  for (const Derived& d : plan_.derived) values.emplace_back(Value(value_of(d, *plan_.base, values)));
+  for (const Derived& d : plan_.derived)
+    values.emplace_back(Value(value_of(d, plan_.base->scene.source, values).value()));
   return values;
 }
 

@@ -1,22 +1,16 @@
 #include "withy/campaign/collect.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <charconv>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <string_view>
 #include <system_error>
 
 #include "withy/campaign/cases.hpp"
 #include "withy/campaign/histories_picture.hpp"
+#include "withy/campaign/own_part.hpp"
 #include "withy/results/csv.hpp"
 #include "withy/results/output_file.hpp"
 
@@ -25,44 +19,11 @@ namespace {
 
 constexpr std::size_t most_numbers = 8'000'000;  // in memory
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
-/// Whether the process that writes a part has ended without finishing it: of this machine where there is no such
-/// process, of others, which write to the same store, where nothing was written for a day.
-bool is_left_behind(const std::filesystem::path& part, std::string_view writer) {
-  constexpr std::chrono::hours long_ago(24);
-  pid_t process = 0;
-  const char* const last = writer.data() + writer.size();
-  const auto read = std::from_chars(writer.data(), last, process);
-  if (read.ec != std::errc() || process <= 0) return false;
-  if (std::string_view(read.ptr, last) == "." + host_name()) return ::kill(process, 0) != 0 && errno == ESRCH;
-  std::error_code failed;
-  const auto written = std::filesystem::last_write_time(part, failed);
-  return !failed && std::filesystem::file_time_type::clock::now() - written > long_ago;
-}
-
-/// Clears away what processes that were killed have left of a table.
-void clear_parts(const std::filesystem::path& table) {
-  const std::string begin = table.filename().string() + ".part";
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(table.parent_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(begin) && is_left_behind(entry.path(), std::string_view(name).substr(begin.size())))
-      std::filesystem::remove(entry.path(), ignored);
-  }
-}
-
 /// A file that takes its name when it is whole.
 class Table {
  public:
   /// Each process has a part of its own: two may collect at once.
-  explicit Table(std::filesystem::path path)
-      : path_(std::move(path)),
-        part_(fmt::format("{}.part{}.{}", path_.string(), ::getpid(), host_name())),
-        file_(part_) {
+  explicit Table(std::filesystem::path path) : path_(std::move(path)), part_(own_part(path_)), file_(part_) {
     clear_parts(path_);
   }
   /// What is not finished is cleared away: it would hold the space that there was too little of.

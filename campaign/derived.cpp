@@ -6,7 +6,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "withy/campaign/cases.hpp"
 #include "withy/campaign/overlaps.hpp"
 #include "withy/campaign/trials.hpp"
 #include "withy/core/plugin/formula.hpp"
@@ -88,32 +87,22 @@ void read_derived(const Value& given, const PlanReader& reader, Plan& plan) {
   }
 }
 
-void check_derived(const Plan& plan, Registry& registry, Problems& problems) {
+void check_derived(const Plan& plan, Problems& problems) {
   const bool read = problems.none();
   for (const Derived& d : plan.derived)
     for (const auto& [name, at] : d.names)
       if (const std::string why = name_trouble(plan, d, name, at, read); !why.empty())
         problems.of_plan().error(d.place, why);
-  if (!problems.none() || plan.derived.empty()) return;
-  const CaseValues first = Cases(plan).values(0);
-  const std::vector<std::string> paths = varied_paths(plan);
-  SceneValues values = plan.base->values;
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const Place& place = i < plan.axes.size() ? plan.axes[i].place : plan.derived[i - plan.axes.size()].place;
-    if (first[i]) set_or_take(values, paths[i], *first[i], origin_of(plan.file, place));
-  }
-  try {
-    static_cast<void>(make_scene(values, registry));
-  } catch (const SceneError& e) {
-    problems.add(e, values);
-  }
 }
 
-double value_of(const Derived& derived, const study::Prepared& base, const CaseValues& values) {
+std::optional<double> value_of(const Derived& derived, const Value& source, const CaseValues& values) {
   std::vector<double> named;
   for (const auto& [name, at] : derived.names) {
     const std::optional<Value> varied = at < 0 ? std::nullopt : values[static_cast<std::size_t>(at)];
-    named.push_back(varied ? varied->number() : own_number(base, name).value());
+    if (varied && varied->kind() != Value::Kind::number) return {};
+    const std::optional<double> number = varied ? varied->number() : number_at(source, name);
+    if (!number) return {};
+    named.push_back(*number);
   }
   return Formula(derived.formula)(named);
 }

@@ -14,11 +14,13 @@ namespace withy::campaign {
 /// Reads `derived` of a plan whose axes are known, in its order: formulas may name what is derived before them. What is
 /// wrong goes to the reader's diagnostics.
 void read_derived(const Value& given, const PlanReader& reader, Plan& plan);
-/// Whether every name is a number, and whether the scene takes what the first case derives.
-void check_derived(const Plan& plan, Registry& registry, Problems& problems);
+/// Whether every name is a number.
+void check_derived(const Plan& plan, Problems& problems);
 
+/// Nothing where a name is no number, which check_derived tells.
+/// \param source checked values of the scene without what varies
 /// \param values of the axes, and of what is derived before it
-double value_of(const Derived& derived, const study::Prepared& base, const CaseValues& values);
+std::optional<double> value_of(const Derived& derived, const Value& source, const CaseValues& values);
 
 /// The number at a path of the checked values of a scene, in SI units; nothing where there is none.
 std::optional<double> number_at(const Value& source, const std::string& path);

@@ -36,9 +36,10 @@ std::string names_in(const std::vector<const Axis*>& columns, std::size_t row) {
   return names;
 }
 
-TrialRow row_of(const std::vector<const Axis*>& columns, std::size_t row) {
+TrialRow row_of(const std::vector<Axis>& axes, const std::vector<const Axis*>& columns, std::size_t row) {
   TrialRow values;
-  for (const Axis* column : columns) values.emplace_back(column->path, column->levels.at(row));
+  for (const Axis* column : columns)
+    values.emplace_back(static_cast<std::size_t>(column - axes.data()), column->levels.at(row));
   return values;
 }
 
@@ -67,7 +68,7 @@ std::vector<TrialRow> rows_of_names(const std::vector<Axis>& axes, const std::ma
     if (columns.empty()) continue;
     std::set<std::string> known{"", names_in(columns, 0)};
     for (std::size_t row = 1; row < columns.front()->levels.size(); ++row)
-      if (known.insert(names_in(columns, row)).second) rows.push_back(row_of(columns, row));
+      if (known.insert(names_in(columns, row)).second) rows.push_back(row_of(axes, columns, row));
   }
   return rows;
 }

@@ -66,14 +66,14 @@ class PlanBuilder {
       if (const Value* history = keep->find("history")) read_history(*history);
     }
     std::optional<SceneValues> base = read_scene();
-    if (base)
-      plan_.sources =
-          try_values(*base, trials_, rows_of_names(plan_.axes, grid_of_file_), plan_.file, registry_, problems_);
+    Tried tried;
+    if (base) tried = try_values(plan_, *base, trials_, rows_of_names(plan_.axes, grid_of_file_), registry_, problems_);
     const bool good = problems_.none();
-    if (base && good) use_si(plan_, *base, registry_);
+    if (base && good) use_si(plan_, *base, tried, registry_);
+    plan_.sources = std::move(tried.sources);
     if (base) plan_.base = prepared_base(std::move(*base), registry_, problems_);
     if (plan_.base == nullptr) return std::move(plan_);
-    check_derived(plan_, registry_, problems_);
+    check_derived(plan_, problems_);
     check_kept();
     if (good) finish();
     return std::move(plan_);
@@ -186,7 +186,7 @@ class PlanBuilder {
       plan_.grids.push_back(axis.levels.size());
       const auto& tried =
           value.kind() == Value::Kind::list ? value.items() : std::vector<Value>{value.at("from"), value.at("to")};
-      for (const Value& v : tried) add_trial(axis, v);
+      for (const Value& v : tried) add_trial(v);
       return true;
     }
     if (kind == "list") return read_list(axis, value);
@@ -204,8 +204,13 @@ class PlanBuilder {
     const auto distribution = reader_.distribution(kind, value);
     if (!distribution) return false;
     axis.distribution = *distribution;
-    for (const char* key : {"mean", "from", "to"})
-      if (const Value* v = value.find(key)) add_trial(axis, *v);
+    Value middle(axis.distribution.quantile(0.5));
+    for (const char* key : {"to", "from", "mean"})
+      if (const Value* v = value.find(key)) {
+        add_trial(*v, true);
+        middle.set_place(v->place());
+      }
+    add_trial(middle);
     return true;
   }
 
@@ -231,7 +236,7 @@ class PlanBuilder {
       axis.grid = grid->second;
       Value first = axis.levels.at(0);
       first.set_place(name->place());
-      add_trial(axis, first);
+      add_trial(first);
       return true;
     } catch (const study::InputError& e) {
       reader_.error(name->place(), e.what());
@@ -239,7 +244,8 @@ class PlanBuilder {
     }
   }
 
-  void add_trial(const Axis& axis, const Value& value) { trials_.push_back({plan_.axes.size(), axis.path, value}); }
+  /// Of the axis that is being read.
+  void add_trial(const Value& value, bool end = false) { trials_.push_back({plan_.axes.size(), value, end}); }
 
   void check_axes() {
     const bool sampled = plan_.design == Design::morris || plan_.design == Design::saltelli;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "withy/campaign/derived.hpp"
 #include "withy/campaign/trials.hpp"
@@ -20,15 +21,16 @@ std::optional<AnyQuantity> quantity_of(const Value& value) {
 }
 
 /// The scene with a level of an axis, and those of the same row where these are columns of a list: rows are cases, and
-/// what stands in two of them may not go together. Of other axes the first, or the middle of what is drawn.
-SceneValues with_level(const Plan& plan, SceneValues values, const Axis& axis, std::size_t level) {
-  for (const Axis& other : plan.axes) {
-    const bool beside = !other.drawn() && other.grid == axis.grid;
-    set_or_take(values, other.path,
-                other.drawn() ? Value(other.distribution.quantile(0.5)) : other.levels.at(beside ? level : 0),
-                plan.file);
-  }
-  return values;
+/// what stands in two of them may not go together. Of other axes what it took a value of this one with.
+SceneValues with_level(const Plan& plan, SceneValues scene, const Tried& tried, std::size_t axis, std::size_t level) {
+  CaseValues values = tried.beside[axis];
+  values.resize(plan.axes.size());
+  values[axis] = plan.axes[axis].levels.at(level);
+  for (std::size_t b = 0; b < values.size() && plan.design == Design::product; ++b)
+    if (const Axis& other = plan.axes[b]; !other.drawn() && other.grid == plan.axes[axis].grid)
+      values[b] = other.levels.at(level);
+  set_values(plan, tried.source, std::move(values), true, scene);
+  return scene;
 }
 
 /// Whether the scene can be made with a number at a path: one where names are meant cannot.
@@ -63,15 +65,17 @@ void convert(Levels& levels, const Dimension& dimension) {
 
 }  // namespace
 
-void use_si(Plan& plan, const SceneValues& base, Registry& registry) {
+void use_si(Plan& plan, const SceneValues& base, const Tried& tried, Registry& registry) {
   constexpr int wrong_rows = 16;  // each costs a scene, and a list may have a million
-  for (Axis& axis : plan.axes) {
-    int tried = 0;
-    for (std::size_t k = 0; k < axis.levels.size() && tried < wrong_rows; ++k) {
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    Axis& axis = plan.axes[a];
+    int tries = 0;
+    for (std::size_t k = 0; k < axis.levels.size() && tries < wrong_rows; ++k) {
       const std::optional<AnyQuantity> read = quantity_of(axis.levels.at(k));
       if (!read) continue;
-      ++tried;
-      const std::optional<bool> number = is_number(with_level(plan, base, axis, k), axis.path, *read->value, registry);
+      ++tries;
+      const std::optional<bool> number =
+          is_number(with_level(plan, base, tried, a, k), axis.path, *read->value, registry);
       if (!number) continue;
       if (*number) convert(axis.levels, read->dimension);
       break;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -17,6 +16,7 @@
 
 #include "withy/campaign/cases.hpp"
 #include "withy/campaign/kept.hpp"
+#include "withy/campaign/own_part.hpp"
 #include "withy/campaign/plan_reader.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/make_folder.hpp"
@@ -204,10 +204,9 @@ std::string case_command(const StoreDescription& about) {
 }
 
 void write_description(const std::filesystem::path& store, const StoreDescription& about) {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
-  const std::filesystem::path own = store / fmt::format("store.{}-{}", ::getpid(), now);
+  const std::filesystem::path whole = store / name_of_description, own = own_part(whole);
   write_lasting_file(own, text_of(about));
-  std::filesystem::rename(own, store / name_of_description);
+  std::filesystem::rename(own, whole);
 }
 
 StoreDescription read_description(const std::filesystem::path& store) {
@@ -220,7 +219,11 @@ StoreDescription read_description(const std::filesystem::path& store) {
 Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
     : path_(std::move(path)), about_(description_of(plan)) {
   for (const char* name : names_of_files) keep_inputs(path_ / name, plan.files);
-  if (!anew && is_same()) return;
+  if (anew || !is_same()) make(anew);
+  clear_parts(path_ / name_of_description);
+}
+
+void Store::make(bool anew) const {
   make_folder(path_);
   // Shards may begin a store together: one makes it, and the others find it made.
   const StoreLock lock(path_ / name_of_lock);

@@ -103,6 +103,7 @@ class Store {
   [[nodiscard]] std::filesystem::path segment(std::uint64_t shard, std::uint64_t shards, std::size_t worker) const;
 
  private:
+  void make(bool anew) const;
   [[nodiscard]] bool is_same() const;
   [[nodiscard]] bool goes_on() const;
   void clear() const;

@@ -3,37 +3,116 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
 
+#include "withy/campaign/derived.hpp"
+#include "withy/campaign/overlaps.hpp"
+#include "withy/scene/scene.hpp"
+#include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::campaign {
 namespace {
 
-/// Makes a scene for what it is made from. \throws SceneError
-void add_sources(const SceneValues& values, Registry& registry, SceneSources& sources) {
-  const Scene scene = make_scene(values, registry);
-  for (const FileUsed& file : scene.sources.files) sources.add(file);
-  for (const PluginUsed& plugin : scene.sources.plugins) sources.add(plugin);
+/// A quantity as the number that cases have in its place.
+Value in_si(const Value& value) {
+  if (value.kind() != Value::Kind::text) return value;
+  const AnyQuantity read = read_any_quantity(value.text());
+  return read.value ? Value(*read.value) : value;
 }
 
-/// Makes a scene for its problems; false where there are any.
-bool make(const SceneValues& values, Registry& registry, Problems& problems, SceneSources& sources) {
-  try {
-    add_sources(values, registry, sources);
+bool is_quantity(const Value& value) {
+  return value.kind() == Value::Kind::text && in_si(value).kind() == Value::Kind::number;
+}
+
+/// Values of a plan, tried together.
+class Trials {
+ public:
+  Trials(const Plan& plan, const SceneValues& base, const std::vector<Trial>& trials, Registry& registry, Tried& tried)
+      : plan_(plan), base_(base), trials_(trials), registry_(registry), tried_(tried), own_(plan.axes.size()) {
+    tried_.source = made(base_).source;
+    tried_.beside.resize(plan.axes.size());
+    first_ = own_;
+    if (plan.design == Design::one_at_a_time) return;
+    for (const Trial& trial : trials)
+      if (!trial.end && !first_[trial.axis]) first_[trial.axis] = trial.value;
+  }
+
+  void try_value(const Trial& trial, Problems& problems) {
+    if (is_taken(trial)) return;
+    CaseValues values = first_;
+    values[trial.axis] = trial.value;
+    const SceneValues scene = with(std::move(values), true, trial.axis);
+    try {
+      static_cast<void>(made(scene));
+    } catch (const SceneError& e) {
+      problems.add(e, scene);
+    }
+  }
+
+  void try_row(const TrialRow& row) {
+    CaseValues values = tried_.beside[row.front().first];
+    if (values.empty()) values = first_;
+    for (const auto& [axis, value] : row) values[axis] = value;
+    static_cast<void>(takes(values));
+  }
+
+ private:
+  SceneValues with(CaseValues values, bool derive, std::optional<std::size_t> last = {}) const {
+    SceneValues scene = base_;
+    set_values(plan_, tried_.source, std::move(values), derive, scene, last);
+    return scene;
+  }
+
+  Scene made(const SceneValues& values) {
+    Scene scene = make_scene(values, registry_);
+    for (const FileUsed& file : scene.sources.files) tried_.sources.add(file);
+    for (const PluginUsed& plugin : scene.sources.plugins) tried_.sources.add(plugin);
+    return scene;
+  }
+
+  bool takes(const CaseValues& values, bool derive = true) try {
+    static_cast<void>(made(with(values, derive)));
     return true;
-  } catch (const SceneError& e) {
-    problems.add(e, values);
+  } catch (const SceneError&) {
     return false;
   }
-}
 
-void try_row(SceneValues values, const TrialRow& row, const std::string& plan, Registry& registry,
-             SceneSources& sources) try {
-  for (const auto& [path, value] : row) set_or_take(values, path, value, plan);
-  add_sources(values, registry, sources);
-} catch (const SceneError&) {
-  // Its cases say what is wrong with them.
-}
+  bool is_taken(const Trial& trial) {
+    const auto beside = [&](CaseValues values, bool derive = true) {
+      values[trial.axis] = trial.value;
+      if (!takes(values, derive)) return false;
+      last_ = values;
+      CaseValues& kept = tried_.beside[trial.axis];
+      if (kept.empty() || (is_quantity(trial.value) && !is_quantity(*kept[trial.axis]))) kept = std::move(values);
+      return true;
+    };
+    if (beside(first_) || beside(own_)) return true;
+    if (trial.end && !plan_.derived.empty() && beside(first_, false)) return true;
+    if (plan_.design == Design::one_at_a_time) return false;
+    if (!last_.empty() && beside(last_)) return true;
+    for (const Trial& other : trials_) {
+      if (other.axis == trial.axis) continue;
+      if (left_ == 0) return true;
+      --left_;
+      CaseValues values = first_;
+      values[other.axis] = other.value;
+      if (beside(std::move(values))) return true;
+    }
+    return false;
+  }
+
+  const Plan& plan_;
+  const SceneValues& base_;
+  const std::vector<Trial>& trials_;
+  Registry& registry_;
+  Tried& tried_;
+  CaseValues own_, first_;  ///< nothing of any axis; the first of each
+  CaseValues last_;         ///< taken last
+  int left_ = 4096;         ///< scenes to find company in; beyond them cases say what is wrong with them
+};
 
 }  // namespace
 
@@ -46,6 +125,7 @@ std::string origin_of(const std::string& file, const Place& place) {
 }
 
 void Problems::add(const SceneError& error, const SceneValues& values) {
+  const auto before = static_cast<std::ptrdiff_t>(of_scene_.size());
   for (Diagnostic d : error.problems()) {
     const int line = d.place.line;
     std::string origin = line < 0   ? values.origins()[static_cast<std::size_t>(-line) - 1]
@@ -55,7 +135,10 @@ void Problems::add(const SceneError& error, const SceneValues& values) {
     if (at == origins_.end()) at = origins_.insert(origins_.end(), std::move(origin));
     d.place.line = -1 - static_cast<int>(at - origins_.begin());
     d.place.column = 0;
-    of_scene_.push_back(std::move(d));
+    const bool told = std::any_of(of_scene_.begin(), of_scene_.begin() + before, [&](const Diagnostic& other) {
+      return other.place.line == d.place.line && other.place.path == d.place.path;
+    });
+    if (!told) of_scene_.push_back(std::move(d));
   }
 }
 
@@ -66,29 +149,35 @@ void Problems::raise() const {
   throw SceneError(plan_, std::move(all), origins_);
 }
 
-SceneSources try_values(const SceneValues& base, const std::vector<Trial>& trials, const std::vector<TrialRow>& rows,
-                        const std::string& plan, Registry& registry, Problems& problems) {
-  SceneSources sources;
-  if (!make(base, registry, problems, sources)) return sources;
-  const auto put = [&](SceneValues& values, const Trial& trial) {
-    set_or_take(values, trial.path, trial.value, origin_of(plan, trial.value.place()));
+void set_values(const Plan& plan, const Value& source, CaseValues values, bool derive, SceneValues& scene,
+                std::optional<std::size_t> last) {
+  const auto set = [&](std::size_t a) {
+    if (values[a]) set_or_take(scene, plan.axes[a].path, *values[a], origin_of(plan.file, values[a]->place()));
   };
-  SceneValues first = base;
-  std::vector<const Trial*> others;
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    if (i == 0 || trials[i].axis != trials[i - 1].axis)
-      put(first, trials[i]);
-    else
-      others.push_back(&trials[i]);
+  for (std::size_t a = 0; a < values.size(); ++a) set(a);
+  const auto is_part = [&](const Axis& axis) { return is_within(axis.path, plan.axes[*last].path); };
+  if (last && std::none_of(plan.axes.begin(), plan.axes.end(), is_part)) set(*last);
+  if (!derive) return;
+  for (std::optional<Value>& value : values)
+    if (value) value = in_si(*value);
+  for (const Derived& d : plan.derived) {
+    const std::optional<double> number = value_of(d, source, values);
+    if (number) scene.set(d.path, Value(*number), origin_of(plan.file, d.place));
+    values.emplace_back(number ? Value(*number) : Value());
   }
-  if (!make(first, registry, problems, sources)) return sources;
-  for (const Trial* trial : others) {
-    SceneValues values = first;
-    put(values, *trial);
-    make(values, registry, problems, sources);
+}
+
+Tried try_values(const Plan& plan, const SceneValues& base, const std::vector<Trial>& trials,
+                 const std::vector<TrialRow>& rows, Registry& registry, Problems& problems) {
+  Tried tried;
+  try {
+    Trials all(plan, base, trials, registry, tried);
+    for (const Trial& trial : trials) all.try_value(trial, problems);
+    for (const TrialRow& row : rows) all.try_row(row);
+  } catch (const SceneError& e) {
+    problems.add(e, base);
   }
-  for (const TrialRow& row : rows) try_row(first, row, plan, registry, sources);
-  return sources;
+  return tried;
 }
 
 std::shared_ptr<study::Prepared> prepared_base(SceneValues base, Registry& registry, const Problems& problems) {

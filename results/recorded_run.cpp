@@ -184,6 +184,7 @@ RecordedRun begin_run(const std::filesystem::path& folder, const study::Prepared
 RecordedRun resume_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
                        const Provenance& provenance, const study::RunSettings& settings, RunFiles files,
                        const std::function<void(std::string_view)>& remark) {
+  refuse_busy(folder);  // its run may not have come to a checkpoint yet
   const CheckpointFiles checkpoints(folder, provenance.fingerprint());
   if (!checkpoints.exist()) throw ResultsError(folder.string() + " holds no checkpoint: there is nothing to resume");
   const ResultsFolder taken(folder, "run", provenance, run_content(), FolderUse::go_on);

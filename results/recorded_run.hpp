@@ -67,7 +67,7 @@ RecordedRun record_lasting_run(const std::filesystem::path& folder, const study:
 RecordedRun begin_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
                       const Provenance& provenance, const study::RunSettings& settings, RunFiles files, FolderUse use);
 /// Goes on from the newest sound checkpoint in the folder. \param remark is told where that is not the newest
-/// \throws ResultsError where there is none, or the folder is another run's
+/// \throws ResultsError where there is none, or the folder is another run's; FolderBusy, whether there is one or not
 RecordedRun resume_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
                        const Provenance& provenance, const study::RunSettings& settings, RunFiles files,
                        const std::function<void(std::string_view)>& remark);

@@ -45,6 +45,11 @@ std::string recorded_writer(const std::filesystem::path& folder) {
   return process.is_number() ? "process " + process.dump() : "another process";
 }
 
+FolderBusy busy(const std::filesystem::path& folder, const std::string& writer) {
+  return FolderBusy(
+      fmt::format("{} is being written by {}; wait for its end, or give another folder", folder.string(), writer));
+}
+
 /// Whether `result.json` is no record, nor what is left of one.
 bool is_foreign(const std::filesystem::path& folder) {
   const std::string text = text_of_record(folder);
@@ -167,8 +172,7 @@ void ResultsFolder::lock() {
   const int error = errno;
   ::close(file_);
   if (error != EWOULDBLOCK) throw std::system_error(error, std::generic_category(), record.string());
-  throw FolderBusy(fmt::format("{} is being written by {}; wait for its end, or give another folder", path_.string(),
-                               recorded_writer(path_)));
+  throw busy(path_, recorded_writer(path_));
 }
 
 // In place, since the lock is the file's. It is never cut to nothing: ext4 has a file that was written to the disk at
@@ -190,6 +194,10 @@ std::string writer_of(const std::filesystem::path& folder) {
   const bool locked = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(file);
   return locked ? recorded_writer(folder) : std::string();
+}
+
+void refuse_busy(const std::filesystem::path& folder) {
+  if (const std::string writer = writer_of(folder); !writer.empty()) throw busy(folder, writer);
 }
 
 std::string folder_suffix(const std::vector<std::string>& settings) {

@@ -60,6 +60,9 @@ class ResultsFolder {
 /// nobody does.
 std::string writer_of(const std::filesystem::path& folder);
 
+/// \throws FolderBusy where somebody writes the folder now.
+void refuse_busy(const std::filesystem::path& folder);
+
 /// What tells a folder's name from those of other settings: "" where there are none, "-loads.slew.time_scale=1.2", or
 /// where that is no good name for a folder "-set-1a2b3c4d".
 std::string folder_suffix(const std::vector<std::string>& settings);

@@ -78,6 +78,52 @@ keep: {final: [pivot]}
               HasSubstr("plan.yaml:5:15: /keep/peak/0: no result \"pivto\"; did you mean 'pivot'?"));
 }
 
+/// The rod's inertia about z can only be that about x: it has none about y.
+TEST(Plans, TakeValuesThatTheSceneTakesOnlyWithWhatFollowsFromThem) {
+  const PlanFolder folder;
+  folder.write("list.csv", "i\n0.2\n0.3\n");
+  for (const char* values : {"{grid: [0.2, 0.3]}", "{grid: [0.2 kg m^2, 0.3]}", "{list: {file: list.csv, column: i}}",
+                             "{normal: {mean: 0.2, deviation: 0.02}}", "{uniform: {from: 0.2, to: 0.3}}"}) {
+    const Plan plan = folder.plan(std::string("vary: {bodies.rod.inertia.2: ") + values +
+                                  "}\nderived: {bodies.rod.inertia.0: bodies.rod.inertia.2}\n");
+    const CaseValues first = Cases(plan).values(0);
+    EXPECT_EQ(first[0]->number(), first[1]->number()) << values;
+  }
+}
+
+TEST(Plans, TellWhatTheSceneRefusesOfDerivedValuesOnceAndAtTheirPlace) {
+  const PlanFolder folder;
+  const auto told = [&](const std::string& values, const std::string& formula) {
+    return folder.errors("vary: {bodies.rod.center_of_mass.0: " + values + "}\nderived: {bodies.rod.mass: " + formula +
+                         "}\n");
+  };
+  const std::string x = "bodies.rod.center_of_mass.0", place = "plan.yaml:5:28: /bodies/rod/mass: got ";
+  const std::string each = told("{grid: [1, 2, 3]}", "-" + x);
+  EXPECT_THAT(each, HasSubstr(place + "-1"));
+  EXPECT_EQ(each.find(place), each.rfind(place)) << each;
+  EXPECT_THAT(told("{grid: [1, 2, -3]}", x), HasSubstr(place + "-3")) << "not the first alone";
+  EXPECT_THAT(told("{uniform: {from: 0, to: 1}}", "-1 - " + x), HasSubstr(place + "-1.5"));
+  EXPECT_EQ(told("{uniform: {from: 0, to: 1}}", x), "nothing") << "no case has the end itself";
+}
+
+/// What goes together with no other value is a mistake; what goes together with some is a matter of the cases.
+TEST(Plans, TakeValuesThatTheSceneTakesOnlyWithSomeOfOthers) {
+  const PlanFolder folder;
+  const auto plan = [](const std::string& z, const std::string& x) {
+    return "vary:\n  bodies.rod.inertia.2: {grid: " + z + "}\n  bodies.rod.inertia.0: {grid: " + x + "}\n";
+  };
+  EXPECT_EQ(Cases(folder.plan(plan("[0.1, 0.3]", "[0.1, 0.3]"))).size(), 4U);
+  EXPECT_EQ(Cases(folder.plan(plan("[0.2, 0.3]", "[0.3, 0.2]"))).size(), 4U) << "the first do not go together";
+  const Plan read = folder.plan(plan("[0.2 kg m^2, 0.3]", "[0.3 kg m^2, 0.2]"));
+  for (const Axis& axis : read.axes) EXPECT_EQ(axis.levels.numbers.size(), 2U) << axis.path;
+  const std::string said = folder.errors(plan("[0.1, 0.5, 0.3]", "[0.1, 0.3]"));
+  EXPECT_THAT(said, HasSubstr("plan.yaml:5:38: /bodies/rod/inertia: "));
+  EXPECT_EQ(said.find("plan.yaml:"), said.rfind("plan.yaml:")) << said;
+  EXPECT_THAT(folder.errors(plan("[0.1, 0.3]", "[0.1, 0.3]") + "design: one-at-a-time\n"),
+              AllOf(HasSubstr("plan.yaml:5:38: "), HasSubstr("plan.yaml:6:38: ")))
+      << "no case has both";
+}
+
 TEST(Plans, RefuseWhatTheirDesignCannotBe) {
   const PlanFolder folder;
   EXPECT_THAT(folder.errors("vary: {bodies.rod.mass: {grid: [1, 2]}}\ncases: 3\n"), HasSubstr("nothing is drawn"));

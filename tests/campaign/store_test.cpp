@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -10,10 +11,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <initializer_list>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "withy/campaign/own_part.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/tests/campaign/store_fixture.hpp"
@@ -103,6 +107,32 @@ TEST(Sweeps, CollectingClearsAwayWhatKilledProcessesHaveLeftOfATable) {
   collect(folder / "store");
   for (const std::string& gone : {dead, old}) EXPECT_FALSE(std::filesystem::exists(folder / gone)) << gone;
   for (const std::string& kept : {alive, elsewhere}) EXPECT_TRUE(std::filesystem::exists(folder / kept)) << kept;
+}
+
+TEST(Sweeps, GoingOnClearsAwayWhatKilledProcessesHaveLeftOfTheDescription) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  Store(folder / "store", plan, false);
+  const std::filesystem::path about = folder / "store/store.json", alive = own_part(about);
+  const auto make = [](const std::filesystem::path& part) { std::ofstream(part) << "half"; };
+  make(alive);
+  const pid_t killed = fork();
+  if (killed == 0) {
+    const std::filesystem::path part = own_part(about);
+    make(part);
+    make(part.string() + ".part");  // as it is itself written
+    _exit(0);
+  }
+  ASSERT_EQ(waitpid(killed, nullptr, 0), killed);
+  const auto parts = [&] {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "store"))
+      if (entry.path().string().starts_with(about.string() + ".")) names.push_back(entry.path().string());
+    return names;
+  };
+  ASSERT_EQ(parts().size(), 3U);
+  Store(folder / "store", plan, false);
+  EXPECT_THAT(parts(), testing::ElementsAre(alive.string()));
 }
 
 /// File, title and folders of plugins are no part of the fingerprint: tables and pages name those of the last command.

@@ -46,6 +46,19 @@ TEST(Sweeps, AreTheSameToTheLastByteWhateverTheJobsShardsAndOrder) {
   }
 }
 
+TEST(Sweeps, RefuseTheCasesWhoseValuesDoNotGoTogether) {
+  const PlanFolder folder;
+  const Plan plan =
+      folder.plan(R"(vary: {bodies.rod.inertia.2: {grid: [0.2, 0.3]}, bodies.rod.inertia.0: {grid: [0.3, 0.2]}}
+keep: {final: [pivot]}
+)");
+  EXPECT_EQ(run(folder, plan, "store", {1, 1, 1, {}}).failed, 2U);
+  const std::string table = table_of(folder, "store");
+  for (const char* row :
+       {"\n0,refused,0.2,0.3,", "\n1,completed,0.2,0.2,", "\n2,completed,0.3,0.3,", "\n3,refused,0.3,0.2,"})
+    EXPECT_THAT(table, HasSubstr(row));
+}
+
 /// Cases of the driven arm: of two integrators with steps of their own, some of them too long, of two structures and of
 /// a formulation without lanes, so that lanes end early, run empty, are filled anew and wait for each other.
 Plan arm_plan(const PlanFolder& folder, const std::string& more) {

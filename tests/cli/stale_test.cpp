@@ -143,6 +143,9 @@ TEST(Folders, TwoRunsDoNotWriteOne) {
   const Finished second = withy(folder, joined(run, {"--set", "bodies.payload.mass=4", "--out", "out", "--force"}));
   EXPECT_EQ(second.status, 3);
   EXPECT_THAT(second.err, HasSubstr("out is being written by process " + std::to_string(first.id())));
+  const Finished resumed = withy(folder, joined(run, {"--out", "out", "--resume"}));
+  EXPECT_EQ(resumed.status, 3) << "it has no checkpoint yet";
+  EXPECT_THAT(resumed.err, HasSubstr("out is being written by process " + std::to_string(first.id())));
   ::kill(first.id(), SIGKILL);
   first.wait();
 }
