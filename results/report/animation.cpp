@@ -134,7 +134,9 @@ Animation::Animation(std::string_view text) try {
     bodies_.back().at = at;
     at += bodies_.back().size();
   }
-  if (at != size_) throw ResultsError("the report holds other numbers than it says");
+  if (motion.contains("remainders")) remainders_ = array_of<float>(run, motion.at("remainders"));
+  if (at != size_ || (far() && remainders_.size() != 3 * bodies_.size() * times.size()))
+    throw ResultsError("the report holds other numbers than it says");
   join_segments(motion.at("parts"));
   radius_ = 0.011 * extent();
 } catch (const Json::exception&) {
@@ -164,7 +166,11 @@ Pose Animation::undeformed(std::size_t body, std::size_t moment) const {
 }
 
 Pose Animation::pose(std::size_t body, std::size_t moment) const {
-  return pose_from(numbers_, moments_[moment] * size_ + bodies_[body].at);
+  Pose X = pose_from(numbers_, moments_[moment] * size_ + bodies_[body].at);
+  if (far())
+    X.p +=
+        Eigen::Map<const Eigen::Vector3f>(&remainders_[3 * (moments_[moment] * bodies_.size() + body)]).cast<double>();
+  return X;
 }
 
 Animation::Shape Animation::shape_at(const Body& body, std::size_t moment) const {

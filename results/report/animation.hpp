@@ -27,6 +27,8 @@ class Animation {
   [[nodiscard]] std::size_t bodies() const { return bodies_.size(); }
   [[nodiscard]] const std::string& name(std::size_t body) const { return bodies_[body].name; }
   [[nodiscard]] bool flexible(std::size_t body) const { return bodies_[body].flexible; }
+  /// Whether the motion is so far from the world's origin, for its size, that 32 bits do not tell its places.
+  [[nodiscard]] bool far() const { return !remainders_.empty(); }
   /// Of a body at a moment, in the world.
   [[nodiscard]] Pose pose(std::size_t body, std::size_t moment) const;
   /// Where it would be at a moment, were all that it is a part of undeformed: of a segment of a beam as far from the
@@ -80,7 +82,8 @@ class Animation {
   std::vector<double> times_;
   std::vector<std::size_t> moments_;  ///< of each time, its place in numbers_
   std::vector<float> numbers_;
-  std::size_t size_ = 0;  ///< numbers of a moment
+  std::vector<float> remainders_;  ///< what numbers_ leave of positions, three a body and moment; empty: nothing
+  std::size_t size_ = 0;           ///< numbers of a moment
   Vector3 up_ = Vector3::UnitZ();
   std::vector<Body> bodies_;
   double radius_ = 0;  ///< of rods and beads [m]

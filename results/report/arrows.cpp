@@ -79,6 +79,7 @@ void Arrows::add_vector(const std::string& output, const char* what, const char*
                      axes,
                      offset,
                      {},
+                     {},
                      0});
 }
 
@@ -94,7 +95,10 @@ void Arrows::append(std::span<const double> y, std::span<const double> row) {
     Vector3 v = R * Eigen::Map<const Vector3>(row.data() + arrow.column);
     if (!v.allFinite()) v.setZero();
     const WorldPose place = seen_->frame_pose(arrow.at.body, arrow.at.frame);
-    for (const double x : place.position) arrow.numbers.push_back(static_cast<float>(x));
+    for (const double x : place.position) {
+      arrow.numbers.push_back(static_cast<float>(x));
+      arrow.remainders.push_back(static_cast<float>(x - static_cast<double>(arrow.numbers.back())));
+    }
     for (const double x : v) arrow.numbers.push_back(static_cast<float>(x));
     arrow.greatest = std::max(arrow.greatest, v.norm());
   }

@@ -28,6 +28,7 @@ class Arrows {
     FrameIndex at, axes;                   ///< axes.body −1: the world
     Matrix3 offset = Matrix3::Identity();  ///< of the components' axes in those
     std::vector<float> numbers = {};
+    std::vector<float> remainders = {};  ///< what 32 bits leave of its places [m]
     double greatest = 0;
   };
   [[nodiscard]] const std::vector<Arrow>& all() const { return arrows_; }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <unordered_map>
 
@@ -52,8 +54,14 @@ bool root_is_body(const BodyNode& node) {
          !moved_by_modes(root.section);
 }
 
-/// The homogeneous box with a body's mass and inertia about its centre of mass: edges [m] and pose.
-Json box_json(const ModalShape& shape) {
+/// A homogeneous box: edges [m] and pose in its body.
+struct MassBox {
+  Vector3 edges;
+  Pose pose;
+};
+
+/// That with a body's mass and inertia about its centre of mass; of a body without mass none.
+std::optional<MassBox> mass_box(const ModalShape& shape) {
   double mass = 0;
   Vector3 moment = Vector3::Zero();
   Matrix3 about_origin = Matrix3::Zero();
@@ -64,7 +72,7 @@ Json box_json(const ModalShape& shape) {
     about_origin += p.mass * square(p.at.X);
   }
   for (const Section& s : shape.sections) about_origin += s.inertia;
-  if (!(mass > 0)) return nullptr;
+  if (!(mass > 0)) return std::nullopt;
   const Vector3 center = moment / mass;
   const Eigen::SelfAdjointEigenSolver<Matrix3> principal(about_origin - mass * square(center));
   const Vector3& I = principal.eigenvalues();
@@ -72,7 +80,13 @@ Json box_json(const ModalShape& shape) {
   for (int i = 0; i < 3; ++i) edges[i] = std::sqrt(std::max(0.0, 6 * (I.sum() - 2 * I[i]) / mass));
   Matrix3 R = principal.eigenvectors();
   if (R.determinant() < 0) R.col(0) *= -1;
-  return {{"edges", vector_json(edges)}, {"pose", pose_json({R, center})}};
+  return MassBox{edges, {R, center}};
+}
+
+Json box_json(const ModalShape& shape) {
+  const std::optional<MassBox> box = mass_box(shape);
+  if (!box) return nullptr;
+  return {{"edges", vector_json(box->edges)}, {"pose", pose_json(box->pose)}};
 }
 
 }  // namespace
@@ -281,7 +295,28 @@ std::span<const double> Drawing::without_discrete(std::span<const double> y) con
   return y.first(model_->layout().size());
 }
 
-void Drawing::append(std::span<const double> y, std::vector<float>& numbers) {
+double Drawing::extent(std::span<const double> y) {
+  seen_->observe(without_discrete(y));
+  Eigen::AlignedBox3d room;
+  for (std::size_t b = 0; b < parts_.size(); ++b) {
+    const Part& part = parts_[b];
+    const Pose X_WB = seen_pose(*seen_, static_cast<int>(b), part.frame);
+    const auto add = [&](const Vector3& p) { room.extend(X_WB.p + X_WB.R * p); };
+    for (const Vector3& p : part.at_rest) add(p);
+    if (part.flexible || part.kind != Kind::box) continue;
+    if (const Surface* given = surface(b)) {
+      for (const Vector3& p : given->vertices) add(p);
+    } else if (const auto box = mass_box(model_->bodies()[b].body->shape())) {
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vector3 sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        add(box->pose.p + box->pose.R * (0.5 * sign.cwiseProduct(box->edges)));
+      }
+    }
+  }
+  return room.isEmpty() ? 0 : room.diagonal().norm();
+}
+
+void Drawing::append(std::span<const double> y, std::vector<float>& numbers, std::vector<float>& remainders) {
   const std::span<const double> state = without_discrete(y);
   seen_->observe(state);
   for (std::size_t b = 0; b < parts_.size(); ++b) {
@@ -289,6 +324,7 @@ void Drawing::append(std::span<const double> y, std::vector<float>& numbers) {
     const auto body = static_cast<int>(b);
     const Pose X_WB = seen_pose(*seen_, body, part.frame);
     append_pose(X_WB, numbers);
+    append_vector(X_WB.p - X_WB.p.cast<float>().cast<double>(), remainders);
     if (!part.flexible) continue;
     const Eigen::VectorXf w = weights(b, state);
     numbers.insert(numbers.end(), w.begin(), w.end());

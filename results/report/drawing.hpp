@@ -45,7 +45,10 @@ class Drawing {
   /// Of a state, y as in State, appended: of each body position [m] and quaternion w x y z in the world; of a flexible
   /// one the weights of its shapes, or displacement of each point [m], if it turns the y axis of each section, and the
   /// poses on which its children hang, body axes.
-  void append(std::span<const double> y, std::vector<float>& numbers);
+  /// \param remainders what 32 bits leave of each body's position [m], three numbers a body
+  void append(std::span<const double> y, std::vector<float>& numbers, std::vector<float>& remainders);
+  /// How large all that is drawn is at a state [m]: the diagonal of the box about it, of flexible bodies at rest.
+  [[nodiscard]] double extent(std::span<const double> y);
   /// Of a state, each body as a line in the world [m]: along a flexible body, or from a rigid body's root to what hangs
   /// on it.
   [[nodiscard]] std::vector<std::vector<Vector3>> lines(std::span<const double> y);

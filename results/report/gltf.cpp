@@ -29,15 +29,25 @@ class Binary {
     json_["animations"].push_back({{"name", "run"}, {"samplers", Json::array()}, {"channels", Json::array()}});
   }
 
-  /// \return the runs' nodes are those of the scene
-  void add(const Animation& run) {
+  /// The runs' nodes are those of the scene. \param origin which place of the world is the file's origin [m]
+  void add(const Animation& run, const Vector3& origin) {
     const std::size_t times = scalars(run.times());
+    // Numbers of 32 bits tell places near the first body, which a node of its own carries along.
+    std::vector<Vector3> carried(run.times().size(), origin);
+    for (std::size_t m = 0; run.far() && m < carried.size(); ++m) carried[m] = run.pose(0, m).p;
     Json children = Json::array();
-    for (std::size_t b = 0; b < run.bodies(); ++b) children.push_back(add_body(run, b, times));
+    for (std::size_t b = 0; b < run.bodies(); ++b) children.push_back(add_body(run, b, carried, times));
     const Eigen::Quaterniond upright(rotation_between(run.up(), Vector3::UnitY()));
-    roots_.push_back(add_to("nodes", {{"name", run.title()},
-                                      {"rotation", {upright.x(), upright.y(), upright.z(), upright.w()}},
-                                      {"children", std::move(children)}}));
+    Json root{{"name", run.title()}, {"rotation", {upright.x(), upright.y(), upright.z(), upright.w()}}};
+    if (run.far()) {
+      root["extras"] = {{"origin", {origin.x(), origin.y(), origin.z()}}};
+      const std::size_t carrier = add_to("nodes", {{"name", run.title() + ", carried"}, {"children", children}});
+      for (Vector3& p : carried) p -= origin;
+      add_places(carrier, carried, times);
+      children = Json::array({carrier});
+    }
+    root["children"] = std::move(children);
+    roots_.push_back(add_to("nodes", std::move(root)));
   }
 
   [[nodiscard]] std::string text() {
@@ -129,7 +139,17 @@ class Binary {
         {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
   }
 
-  std::size_t add_body(const Animation& run, std::size_t body, std::size_t times) {
+  /// What plays nothing shows the first moment, not all bodies on one place.
+  void add_places(std::size_t node, const std::vector<Vector3>& at, std::size_t times) {
+    std::vector<float> places;
+    for (const Vector3& p : at)
+      for (const double x : p) places.push_back(static_cast<float>(x));
+    json_["nodes"][node]["translation"] = std::vector<float>(places.begin(), places.begin() + 3);
+    add_channel(node, "translation", times, add_numbers(places, "VEC3", 3, 0, Json::object()));
+  }
+
+  /// \param carried the place from which the body's is told, at each moment, world axes [m]
+  std::size_t add_body(const Animation& run, std::size_t body, const std::vector<Vector3>& carried, std::size_t times) {
     Json json{{"name", run.name(body)}};
     const Surface surface = run.surface(body);
     Morph morph;
@@ -139,20 +159,19 @@ class Binary {
       json["mesh"] = add_mesh(surface, run.name(body), material, morph);
     }
     const std::size_t node = add_to("nodes", std::move(json));
-    std::vector<float> places, turns;
+    std::vector<Vector3> places;
+    std::vector<float> turns;
     Eigen::Quaternionf before = Eigen::Quaternionf::Identity();
     for (std::size_t m = 0; m < run.times().size(); ++m) {
       const Pose X = run.pose(body, m);
       Eigen::Quaternionf q = Eigen::Quaterniond(X.R).cast<float>().normalized();
       if (q.dot(before) < 0) q.coeffs() *= -1;  // the short way to the next key
       before = q;
-      for (const double x : X.p) places.push_back(static_cast<float>(x));
+      places.emplace_back(X.p - carried[m]);
       turns.insert(turns.end(), {q.x(), q.y(), q.z(), q.w()});
     }
-    // What plays nothing shows the first moment, not all bodies on one place.
-    json_["nodes"][node]["translation"] = std::vector<float>(places.begin(), places.begin() + 3);
     json_["nodes"][node]["rotation"] = std::vector<float>(turns.begin(), turns.begin() + 4);
-    add_channel(node, "translation", times, add_numbers(places, "VEC3", 3, 0, Json::object()));
+    add_places(node, places, times);
     add_channel(node, "rotation", times, add_numbers(turns, "VEC4", 4, 0, Json::object()));
     if (morph.shapes.cols() > 0 && !surface.triangles.empty()) {
       const Eigen::MatrixXf w = morph.weights.cast<float>();  // by columns: all weights of a key together
@@ -172,7 +191,10 @@ class Binary {
 
 std::string gltf_binary(const std::vector<Animation>& runs) {
   Binary file;
-  for (const Animation& run : runs) file.add(run);
+  // Far from the world's origin, where the first such run begins.
+  const auto far = std::find_if(runs.begin(), runs.end(), [](const Animation& run) { return run.far(); });
+  const Vector3 origin = far != runs.end() ? far->pose(0, 0).p : Vector3(Vector3::Zero());
+  for (const Animation& run : runs) file.add(run, origin);
   return file.text();
 }
 

@@ -18,6 +18,8 @@ constexpr const char* vtk_type = nullptr;
 template <>
 constexpr const char* vtk_type<float> = "Float32";
 template <>
+constexpr const char* vtk_type<double> = "Float64";
+template <>
 constexpr const char* vtk_type<std::int32_t> = "Int32";
 template <>
 constexpr const char* vtk_type<std::uint8_t> = "UInt8";
@@ -60,12 +62,14 @@ Grid grid_of(const Animation& run) {
   return grid;
 }
 
-void append(const Vector3& v, std::vector<float>& numbers) {
-  for (const double x : v) numbers.push_back(static_cast<float>(x));
+template <class Number>
+void append(const Vector3& v, std::vector<Number>& numbers) {
+  for (const double x : v) numbers.push_back(static_cast<Number>(x));
 }
 
 std::string moment_text(const Animation& run, const Grid& grid, std::size_t moment) {
-  std::vector<float> points, displacements;
+  std::vector<double> points;  // 32 bits would not tell apart the points of a satellite on its orbit
+  std::vector<float> displacements;
   for (std::size_t b = 0; b < run.bodies(); ++b) {
     const Pose X = run.pose(b, moment), X_rest = run.undeformed(b, moment);
     const std::vector<Vector3>& rest = grid.surfaces[b].vertices;

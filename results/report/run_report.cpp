@@ -1,6 +1,7 @@
 #include "withy/results/report/run_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <unordered_map>
@@ -100,12 +101,23 @@ Json validity_json(const ReportTable& table, const study::Certificate& certifica
   return all;
 }
 
-/// Places and vectors moment by moment, six numbers each.
-Json arrows_json(const Arrows& arrows, ArrayTexts& data) {
+/// Places and vectors moment by moment, six numbers each. \param far whether remainders of the places are told
+Json arrows_json(const Arrows& arrows, bool far, ArrayTexts& data) {
   Json list = Json::array();
-  for (const Arrows::Arrow& a : arrows.all())
+  for (const Arrows::Arrow& a : arrows.all()) {
     list.push_back({{"name", a.name}, {"unit", a.unit}, {"greatest", a.greatest}, {"numbers", data.add(a.numbers)}});
+    if (far) list.back()["remainders"] = data.add(a.remainders);
+  }
   return list;
+}
+
+/// Of the size of a system, what places may be off by: less than can be seen, also from much nearer.
+constexpr double unseen = 1e-6;
+
+/// Whether what is left of places is more than that, as far away from the world's origin.
+bool seen(const std::vector<float>& remainders, double size) {
+  return std::any_of(remainders.begin(), remainders.end(),
+                     [&](float x) { return std::abs(static_cast<double>(x)) > unseen * size; });
 }
 
 std::vector<std::uint32_t> flat(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
@@ -180,11 +192,13 @@ void RunReport::write_motion(const std::vector<DecimatedTable::Row>& samples, co
   Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms(), looks_, prepared_.equations.get());
   Arrows arrows(prepared_.scene, prepared_.scene.formulation->terms(), table_.recorded());
   std::vector<double> times;
-  std::vector<float> numbers;
+  std::vector<float> numbers, remainders;
+  double size = 0;
   for (const DecimatedTable::Row& row : samples) {
     const State state = state_of_row(prepared_.model().layout(), *row);
+    if (times.empty()) size = drawing.extent(state.y);
     times.push_back(state.time);
-    drawing.append(state.y, numbers);
+    drawing.append(state.y, numbers, remainders);
     arrows.append(state.y, *row);
   }
   const Vector3& g = prepared_.model().gravity();
@@ -192,7 +206,10 @@ void RunReport::write_motion(const std::vector<DecimatedTable::Row>& samples, co
   write_list(
       drawing.parts(), [&](std::size_t b) { return part_json(drawing, b, data); }, write);
   write(",\"size\":" + std::to_string(drawing.size()) + ",\"times\":" + std::to_string(data.add(times)) +
-        ",\"numbers\":" + std::to_string(data.add(numbers)) + ",\"arrows\":" + page_json(arrows_json(arrows, data)));
+        ",\"numbers\":" + std::to_string(data.add(numbers)));
+  const bool far = seen(remainders, size);
+  if (far) write(",\"remainders\":" + std::to_string(data.add(remainders)));
+  write(",\"arrows\":" + page_json(arrows_json(arrows, far, data)));
   Json validity = validity_json(table_, ended.certificate, data);
   write("},\"validity\":");
   write_list(

@@ -12,6 +12,7 @@
 #include "scratch.hpp"
 #include "withy/results/report/base64.hpp"
 #include "withy/results/report/paraview.hpp"
+#include "withy/results/results_error.hpp"
 
 namespace withy {
 namespace {
@@ -73,6 +74,22 @@ TEST(Animation, ASegmentIsUndeformedWhereItsWholeBeamIs) {
   const Animation two(two_segments(angle, turned, "hand"));
   const Vector3 bent(std::cos(turned + angle), std::sin(turned + angle), 0);
   EXPECT_LT((place(two, 1) - (root + along + bent)).norm(), rounding);
+}
+
+TEST(Animation, WhatThirtyTwoBitsLeaveOfPlacesIsAddedToThem) {
+  Json run = Json::parse(two_segments(0.3, 0.4, "boom"));
+  EXPECT_FALSE(Animation(run.dump()).far());
+  const std::vector<float> remainders{0.1F, 0, -0.2F, 0, 0.3F, 0};
+  run["animation"]["remainders"] = run["arrays"].size();
+  run["arrays"].push_back(base64_of(remainders));
+  const Animation plain(two_segments(0.3, 0.4, "boom")), far(run.dump());
+  EXPECT_TRUE(far.far());
+  for (std::size_t b = 0; b < 2; ++b) {
+    const Vector3 left(remainders[3 * b], remainders[3 * b + 1], remainders[3 * b + 2]);
+    EXPECT_LT((far.pose(b, 0).p - plain.pose(b, 0).p - left).norm(), 1e-15);
+  }
+  run["arrays"].back() = base64_of(std::vector<float>{0.1F});
+  EXPECT_THROW(Animation(run.dump()), ResultsError);
 }
 
 /// Of all points the mean, which in the rings of a tube is that of its line.

@@ -37,8 +37,8 @@ struct DrawnBody {
       y[modes.position + k] = amplitude * std::cos(1.0 + static_cast<double>(k)) / static_cast<double>(1 + k * k);
     y[scene.model->layout().hinges[0].position] = angle;
     Drawing drawing(scene.model, scene.formulation->terms(), Looks(scene));
-    std::vector<float> numbers;
-    drawing.append(y, numbers);
+    std::vector<float> numbers, remainders;
+    drawing.append(y, numbers, remainders);
     EXPECT_EQ(numbers.size(), drawing.size());
     const std::size_t last = scene.model->bodies().size() - 1;
     const auto number = [&](std::size_t i) { return static_cast<double>(numbers[7 * last + i]); };

@@ -36,14 +36,20 @@ export class Arrows {
     });
   }
 
+  // Where an arrow is at a recorded moment.
+  place({ numbers, remainders }, i, out) {
+    out.fromArray(numbers, 6 * i);
+    if (remainders) for (let c = 0; c < 3; ++c) out.setComponent(c, out.getComponent(c) + remainders[3 * i + c]);
+    return out;
+  }
+
   // Between two moments in proportion.
   go(time) {
     const { times } = this.motion, i = this.motion.index(time), j = Math.min(i + 1, times.length - 1);
     const w = j > i ? Math.min(1, Math.max(0, (time - times[i]) / (times[j] - times[i]))) : 0;
     for (const { arrow, shaft, head, scale } of this.items) {
-      const at = (k, part, out) => out.fromArray(arrow.numbers, 6 * k + part);
-      from.copy(at(i, 0, one)).lerp(at(j, 0, other), w);
-      along.copy(at(i, 3, one)).lerp(at(j, 3, other), w).multiplyScalar(scale);
+      from.copy(this.place(arrow, i, one)).lerp(this.place(arrow, j, other), w);
+      along.fromArray(arrow.numbers, 6 * i + 3).lerp(other.fromArray(arrow.numbers, 6 * j + 3), w).multiplyScalar(scale);
       const length = along.length();
       shaft.visible = head.visible = length > 0.004 * this.size;
       if (!shaft.visible) continue;

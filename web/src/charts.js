@@ -16,15 +16,19 @@ class Panel {
     this.log = false;
     this.element = document.createElement('figure');
     this.element.innerHTML = `<figcaption><span class="name"></span><button class="log" aria-pressed="false" title="Logarithms of magnitudes (L)">log</button></figcaption><div class="chart"></div><p class="untold soft" hidden></p><p class="passed soft" hidden></p><div class="more"></div>`;
-    this.element.querySelector('.name').textContent = `${group.title}${group.title.endsWith(group.unit) ? '' : `  [${group.unit}]`}`;
+    this.element.querySelector('.name').textContent = `${group.title}${!group.unit || group.title.endsWith(group.unit) ? '' : `  [${group.unit}]`}`;
     if (group.limit) this.say_passed();
     this.button = this.element.querySelector('.log');
     this.button.onclick = () => this.toggle_log();
+    // Limits without curves are told in words alone.
+    this.wordy = !group.series.length;
+    for (const part of [this.button, this.element.querySelector('.chart')]) part.hidden = this.wordy;
     this.element.addEventListener('pointerenter', () => { owner.under = this; });
   }
 
   // Numbers are read when the panel comes into sight.
   make() {
+    if (this.wordy) return;
     const { series, limit } = this.group;
     // What is nearest to its limit, or farthest beyond, is seen first.
     if (limit) series.sort((a, b) => b.greatest - a.greatest || 0);
@@ -50,6 +54,7 @@ class Panel {
   }
 
   toggle_log() {
+    if (this.wordy) return;
     this.log = !this.log;
     this.button.setAttribute('aria-pressed', this.log);
     this.draw();

@@ -35,15 +35,21 @@ export function unpack(run) {
     if (samples != null) lazy(column, 'samples', () => doubles(samples));
   }
   animation.times = doubles(animation.times);
-  animation.numbers = new Float32Array(bytes(arrays[animation.numbers]));
+  const floats = index => new Float32Array(bytes(arrays[index]));
+  animation.numbers = floats(animation.numbers);
+  // What 32 bits leave of places: of motions far from the world's origin alone.
+  if (animation.remainders != null) animation.remainders = floats(animation.remainders);
   for (const part of animation.parts) {
-    if (part.surface) part.surface = { vertices: new Float32Array(bytes(arrays[part.surface[0]])), triangles: new Uint32Array(bytes(arrays[part.surface[1]])) };
-    if (part.shapes != null) part.shapes = new Float32Array(bytes(arrays[part.shapes]));
+    if (part.surface) part.surface = { vertices: floats(part.surface[0]), triangles: new Uint32Array(bytes(arrays[part.surface[1]])) };
+    if (part.shapes != null) part.shapes = floats(part.shapes);
     if (part.triangles != null) part.triangles = new Uint32Array(bytes(arrays[part.triangles]));
-    if (part.sections) part.sections.widths = new Float32Array(bytes(arrays[part.sections.widths]));
+    if (part.sections) part.sections.widths = floats(part.sections.widths);
   }
   // Pages of earlier versions have none.
-  for (const arrow of animation.arrows ??= []) arrow.numbers = new Float32Array(bytes(arrays[arrow.numbers]));
+  for (const arrow of animation.arrows ??= []) {
+    arrow.numbers = floats(arrow.numbers);
+    if (arrow.remainders != null) arrow.remainders = floats(arrow.remainders);
+  }
   for (const series of run.validity) {
     const { data } = series;
     lazy(series, 'data', () => series.of === 'rows' ? of_table(data) : doubles(data));
@@ -180,7 +186,8 @@ export function passed_unseen(run) {
     .map(i => `${i.what}: ${plain(i.value)}, limit ${plain(i.limit)}`);
 }
 
-// Groups over all runs: [{title, unit, series: [{name, of: [{run, t, y, spans, whole}], flat, greatest}]}].
+// Groups over all runs: [{title, unit, series: [{name, of: [{run, t, y, spans, whole}], flat, greatest}]}]. Where limits
+// are passed, one of the limits, also where it has no series.
 const first = ['Angles', 'Turns', 'Travel of hinges', 'Attitude', 'Deflection of tips', 'Validity', 'Energies', 'Drift'];
 const last = ['Position of tips', 'Modal coordinates', 'Rates of modal', 'Rates of hinges', 'Speeds of hinges', 'Linear momentum', 'Angular momentum'];
 const rank = title => {
@@ -201,6 +208,7 @@ export function grouped(runs) {
     }
   }
   const all = [...groups.values()];
+  if (!all.some(group => group.limit) && runs.some(run => passed_unseen(run).length)) all.push({ title: 'Validity: passed limits without a curve', unit: '', limit: 1, series: new Map() });
   for (const group of all) {
     group.series = [...group.series.values()];
     for (const s of group.series) {

@@ -29,13 +29,10 @@ class Pose {
 const scratch = new Vector3();
 const identity = new Quaternion();
 
-function mixed(pose, a, i, j, w, other) {
-  pose.read(a, i);
-  if (w === 0) return pose;
-  other.read(a, j);
+function mixed(pose, other, w) {
+  if (w === 0) return;
   pose.p.lerp(other.p, w);
   pose.q.slerp(other.q, w);
-  return pose;
 }
 
 // A rotation by `s` times the angle of q.
@@ -74,10 +71,11 @@ export class Motion {
   constructor(animation) {
     this.times = animation.times;
     this.numbers = animation.numbers;
+    this.remainders = animation.remainders;
     this.size = animation.size;
     let at = 0;
-    this.bodies = animation.parts.map(part => {
-      const body = { ...part, at, pose: new Pose(), recorded: new Pose(), count: part.points.length / 3 };
+    this.bodies = animation.parts.map((part, index) => {
+      const body = { ...part, index, at, pose: new Pose(), recorded: new Pose(), count: part.points.length / 3 };
       at += 7;
       if (part.surface) body.corners = corners_of(part.surface.vertices);
       body.displacements = new Float32Array(part.points.length);
@@ -115,6 +113,14 @@ export class Motion {
     return low;
   }
 
+  // Where a body was at a recorded moment.
+  recorded_at(body, i, pose) {
+    pose.read(this.numbers, i * this.size + body.at);
+    const left = this.remainders, k = 3 * (i * this.bodies.length + body.index);
+    if (left) for (let c = 0; c < 3; ++c) pose.p.setComponent(c, pose.p.getComponent(c) + left[k + c]);
+    return pose;
+  }
+
   // Brings every body's pose and displacements to time t. At scale 1 they are those computed; at others what hangs on a
   // flexible body goes along with what it hangs on.
   go(t, scale) {
@@ -124,7 +130,7 @@ export class Motion {
     const a = this.numbers, I = i * this.size, J = j * this.size;
     const other = new Pose(), relative = new Pose();
     for (const body of this.bodies) {
-      mixed(body.recorded, a, I + body.at, J + body.at, w, other);
+      mixed(this.recorded_at(body, i, body.recorded), this.recorded_at(body, j, other), w);
       if (body.flexible) {
         if (body.shapes) this.deform(body, I, J, w);
         else for (let k = 0; k < body.displacements.length; ++k)
@@ -132,7 +138,7 @@ export class Motion {
         for (let k = 0; body.turns && k < body.y_axes.length; ++k)
           body.y_axes[k] = a[I + body.yAxesAt + k] * (1 - w) + a[J + body.yAxesAt + k] * w;
         for (const hung of body.hung) {
-          mixed(hung.now, a, I + hung.at, J + hung.at, w, other);
+          mixed(hung.now.read(a, I + hung.at), other.read(a, J + hung.at), w);
           hung.drawn.p.copy(hung.now.p).sub(hung.rest.p).multiplyScalar(scale).add(hung.rest.p);
           hung.drawn.q.copy(hung.rest.q).invert().multiply(hung.now.q);
           scaled(hung.drawn.q, scale);
@@ -165,25 +171,26 @@ export class Motion {
     }
   }
 
-  // A point k of a body in the world, drawn at `scale`.
-  point(body, k, scale, out) {
+  // A point k of a body, drawn at `scale`: in the body's axes, and in the world.
+  own_point(body, k, scale, out) {
     const X = body.points, u = body.displacements;
-    out.set(X[3 * k] + scale * u[3 * k], X[3 * k + 1] + scale * u[3 * k + 1], X[3 * k + 2] + scale * u[3 * k + 2]);
-    return out.applyQuaternion(body.pose.q).add(body.pose.p);
+    return out.set(X[3 * k] + scale * u[3 * k], X[3 * k + 1] + scale * u[3 * k + 1], X[3 * k + 2] + scale * u[3 * k + 2]);
+  }
+  point(body, k, scale, out) {
+    return this.own_point(body, k, scale, out).applyQuaternion(body.pose.q).add(body.pose.p);
   }
 
-  // The y axis of section k in the world, drawn at `scale`; of one that does not turn, the body's own.
+  // The y axis of section k in the body's axes, drawn at `scale`; of one that does not turn, the body's own.
   y_axis(body, k, scale, out) {
     const y = body.y_axes;
-    if (y) out.set(scale * y[3 * k], 1 + scale * (y[3 * k + 1] - 1), scale * y[3 * k + 2]).normalize();
-    else out.set(0, 1, 0);
-    return out.applyQuaternion(body.pose.q);
+    if (y) return out.set(scale * y[3 * k], 1 + scale * (y[3 * k + 1] - 1), scale * y[3 * k + 2]).normalize();
+    return out.set(0, 1, 0);
   }
 
   // The outermost point of a body at a recorded moment, as computed: for trails and the room the motion takes.
   end_of(body, i, out) {
     const a = this.numbers, I = i * this.size;
-    const pose = new Pose().read(a, I + body.at);
+    const pose = this.recorded_at(body, i, new Pose());
     if (body.end >= 0) {
       for (let c = 0; c < 3; ++c) {
         const k = 3 * body.end + c;

@@ -1,14 +1,16 @@
-// The bodies of a run as meshes, brought to where they are at a time.
+// The bodies of a run as meshes, brought to where they are at a time. Graphics hardware has numbers of 32 bits, which far
+// from the world's origin would not tell a body's points apart: vertices are in axes of their body, or about a place that
+// is near what is looked at; three.js has places of objects in 64 bits, and tells the hardware where the camera sees them.
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh, Line, LineBasicMaterial,
-  LineDashedMaterial, LineSegments, Matrix4, Mesh, MeshLambertMaterial, Quaternion, SphereGeometry, Vector3,
+  LineDashedMaterial, LineSegments, Matrix4, Mesh, MeshLambertMaterial, SphereGeometry, Vector3,
 } from 'three';
 import { ConvexHull } from 'three/examples/jsm/math/ConvexHull.js';
 
 // Points around a section of half widths 1, and which way its surface looks there: an ellipse, a rectangle.
 const ellipse = Array.from({ length: 16 }, (_, j) => { const angle = Math.PI * j / 8, y = Math.cos(angle), z = Math.sin(angle); return [y, z, y, z]; });
 const rectangle = [[1, -1, 1, 0], [1, 1, 1, 0], [1, 1, 0, 1], [-1, 1, 0, 1], [-1, 1, -1, 0], [-1, -1, -1, 0], [-1, -1, 0, -1], [1, -1, 0, -1]];
-const a = new Vector3(), b = new Vector3(), c = new Vector3(), normal = new Vector3(), side = new Vector3();
+const a = new Vector3(), b = new Vector3(), c = new Vector3(), normal = new Vector3(), side = new Vector3(), matrix = new Matrix4();
 
 function geometry_of(count, index) {
   const geometry = new BufferGeometry();
@@ -117,26 +119,26 @@ export class Shapes {
       item.tube = new Mesh(geometry_of(count, [...grid(body.count, around, true), ...caps]), this.flexible);
       item.tube.geometry.setAttribute('normal', new BufferAttribute(new Float32Array(3 * count), 3));
       item.tube.frustumCulled = false;
-      this.group.add(item.tube);
+      item.group.add(item.tube);
     } else if (body.kind === 'strip') {
       item.sheet = sheet(body.count / body.columns, body.columns);
       item.surface = new Mesh(geometry_of(item.sheet.count, item.sheet.index), this.flexible);
       item.surface.frustumCulled = false;
-      this.group.add(item.surface);
+      item.group.add(item.surface);
     } else if (body.kind === 'mesh') {
       item.faces = new Mesh(geometry_of(body.count), this.faceted);
       item.faces.geometry.setIndex(new BufferAttribute(body.triangles, 1));
       item.faces.frustumCulled = false;
-      this.group.add(item.faces);
+      item.group.add(item.faces);
     } else if (body.kind === 'points') {
       item.dots = new InstancedMesh(new SphereGeometry(radius * 0.8, 10, 8), this.flexible, body.count);
       item.dots.frustumCulled = false;
-      this.group.add(item.dots);
+      item.group.add(item.dots);
       const index = hull_of(body);
       if (index) {
         item.hull = new Mesh(geometry_of(body.count, index), this.skin);
         item.hull.frustumCulled = false;
-        this.group.add(item.hull);
+        item.group.add(item.hull);
       } else {
         // Too few for a surface: rods from each point to the next, as they lie behind each other from the root.
         const away = k => a.fromArray(body.points, 3 * k).lengthSq();
@@ -144,7 +146,7 @@ export class Shapes {
         item.rods = item.chain.slice(1).map(() => {
           const rod = new Mesh(new CylinderGeometry(radius * 0.6, radius * 0.6, 1, 10), this.flexible);
           rod.frustumCulled = false;
-          this.group.add(rod);
+          item.group.add(rod);
           return rod;
         });
       }
@@ -221,17 +223,22 @@ export class Shapes {
       if (item.dots) this.scatter(item, scale);
       if (item.rods) this.join(item, scale);
     }
-    const matrix = new Matrix4();
-    this.jointed.forEach((body, i) => {
-      const parent = this.motion.bodies[body.parent], hung = parent.hung.find(h => h.child === this.motion.bodies.indexOf(body));
-      a.copy(parent.flexible ? hung.drawn.p : hung.rest.p).applyQuaternion(parent.pose.q).add(parent.pose.p);
-      this.joints.setMatrixAt(i, matrix.makeScale(this.balls[i], this.balls[i], this.balls[i]).setPosition(a));
-      this.links.geometry.attributes.position.setXYZ(2 * i, a.x, a.y, a.z).setXYZ(2 * i + 1, body.pose.p.x, body.pose.p.y, body.pose.p.z);
-    });
-    this.links.geometry.attributes.position.needsUpdate = true;
-    this.joints.instanceMatrix.needsUpdate = true;
     this.axes.visible = show.axes;
-    if (show.axes) this.turn_axes();
+  }
+
+  // What stands between bodies, from a place that is near what is looked at.
+  place(origin) {
+    for (const part of [this.joints, this.links, this.axes]) part.position.copy(origin);
+    const { position } = this.links.geometry.attributes;
+    this.jointed.forEach((body, i) => {
+      const parent = this.motion.bodies[body.parent], hung = parent.hung.find(h => h.child === body.index);
+      a.copy(parent.flexible ? hung.drawn.p : hung.rest.p).applyQuaternion(parent.pose.q).add(parent.pose.p).sub(origin);
+      b.copy(body.pose.p).sub(origin);
+      this.joints.setMatrixAt(i, matrix.makeScale(this.balls[i], this.balls[i], this.balls[i]).setPosition(a));
+      position.setXYZ(2 * i, a.x, a.y, a.z).setXYZ(2 * i + 1, b.x, b.y, b.z);
+    });
+    position.needsUpdate = this.joints.instanceMatrix.needsUpdate = true;
+    if (this.axes.visible) this.turn_axes(origin);
   }
 
   // A tube around the deformed middle line, with the sections that the body has.
@@ -239,9 +246,9 @@ export class Shapes {
     const { position, normal: outward } = tube.geometry.attributes, n = body.count, around = ring.length;
     const widths = body.sections?.widths;
     for (let k = 0; k < n; ++k) {
-      this.motion.point(body, Math.max(0, k - 1), scale, a);
-      this.motion.point(body, Math.min(n - 1, k + 1), scale, b);
-      this.motion.point(body, k, scale, c);
+      this.motion.own_point(body, Math.max(0, k - 1), scale, a);
+      this.motion.own_point(body, Math.min(n - 1, k + 1), scale, b);
+      this.motion.own_point(body, k, scale, c);
       b.sub(a).normalize();
       if (k === 0 || body.turns) this.motion.y_axis(body, k, scale, side);
       side.addScaledVector(b, -side.dot(b)).normalize();
@@ -269,12 +276,12 @@ export class Shapes {
     const half = Math.max(body.thickness ?? 0, 0.7 * thinnest) / 2;
     for (let k = 0; k < n; ++k) {
       const r = Math.floor(k / columns), j = k % columns;
-      this.motion.point(body, j > 0 ? k - 1 : k, scale, a);
-      this.motion.point(body, j + 1 < columns ? k + 1 : k, scale, side).sub(a);
-      this.motion.point(body, r > 0 ? k - columns : k, scale, a);
-      this.motion.point(body, r + 1 < rows ? k + columns : k, scale, b).sub(a);
+      this.motion.own_point(body, j > 0 ? k - 1 : k, scale, a);
+      this.motion.own_point(body, j + 1 < columns ? k + 1 : k, scale, side).sub(a);
+      this.motion.own_point(body, r > 0 ? k - columns : k, scale, a);
+      this.motion.own_point(body, r + 1 < rows ? k + columns : k, scale, b).sub(a);
       normal.crossVectors(side, b).normalize();
-      this.motion.point(body, k, scale, c);
+      this.motion.own_point(body, k, scale, c);
       position.setXYZ(k, c.x + half * normal.x, c.y + half * normal.y, c.z + half * normal.z);
       position.setXYZ(n + k, c.x - half * normal.x, c.y - half * normal.y, c.z - half * normal.z);
     }
@@ -289,7 +296,7 @@ export class Shapes {
   warp(surface, body, scale) {
     const position = surface.geometry.attributes.position;
     for (let k = 0; k < body.count; ++k) {
-      this.motion.point(body, k, scale, a);
+      this.motion.own_point(body, k, scale, a);
       position.setXYZ(k, a.x, a.y, a.z);
     }
     position.needsUpdate = true;
@@ -297,15 +304,14 @@ export class Shapes {
   }
 
   scatter({ body, dots }, scale) {
-    const matrix = new Matrix4();
-    for (let k = 0; k < body.count; ++k) dots.setMatrixAt(k, matrix.makeTranslation(this.motion.point(body, k, scale, a)));
+    for (let k = 0; k < body.count; ++k) dots.setMatrixAt(k, matrix.makeTranslation(this.motion.own_point(body, k, scale, a)));
     dots.instanceMatrix.needsUpdate = true;
   }
 
   join({ body, chain, rods }, scale) {
     rods.forEach((rod, i) => {
-      this.motion.point(body, chain[i], scale, a);
-      this.motion.point(body, chain[i + 1], scale, b);
+      this.motion.own_point(body, chain[i], scale, a);
+      this.motion.own_point(body, chain[i + 1], scale, b);
       rod.position.copy(a).add(b).multiplyScalar(0.5);
       b.sub(a);
       rod.scale.y = Math.max(b.length(), 1e-9);
@@ -313,13 +319,13 @@ export class Shapes {
     });
   }
 
-  turn_axes() {
-    const position = this.axes.geometry.attributes.position, q = new Quaternion(), length = this.size * 0.07;
+  turn_axes(origin) {
+    const position = this.axes.geometry.attributes.position, length = this.size * 0.07;
     this.motion.bodies.forEach((body, i) => {
-      q.copy(body.pose.q);
+      b.copy(body.pose.p).sub(origin);
       for (let k = 0; k < 3; ++k) {
-        a.set(0, 0, 0).setComponent(k, length).applyQuaternion(q).add(body.pose.p);
-        position.setXYZ(6 * i + 2 * k, body.pose.p.x, body.pose.p.y, body.pose.p.z);
+        a.set(0, 0, 0).setComponent(k, length).applyQuaternion(body.pose.q).add(b);
+        position.setXYZ(6 * i + 2 * k, b.x, b.y, b.z);
         position.setXYZ(6 * i + 2 * k + 1, a.x, a.y, a.z);
       }
     });

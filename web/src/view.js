@@ -1,6 +1,6 @@
 // The three-dimensional view: camera, light, ground, trails, and the bodies of every run.
 import {
-  AmbientLight, Box3, BufferGeometry, Color, DirectionalLight, GridHelper, Group, Line, LineBasicMaterial, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
+  AmbientLight, Box3, BufferAttribute, BufferGeometry, Color, DirectionalLight, GridHelper, Group, Line, LineBasicMaterial, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { Arrows, greatest_of, longest_in_words, measured } from './arrows.js';
@@ -16,6 +16,23 @@ function round_down(x) {
   return in_decade([5, 2, 1].find(m => in_decade(m, k) <= x * 1.0001), k);
 }
 
+// Where a body and what it carries are drawn now, deformed as computed: {ends, solid}, `solid` corners of its surface or box.
+function places_of(motion, body) {
+  const { p, q } = body.pose, in_world = v => v.applyQuaternion(q).add(p), at = numbers => in_world(new Vector3().fromArray(numbers));
+  const ends = [p.clone()], solid = [];
+  if (body.end >= 0) ends.push(motion.point(body, body.end, 1, new Vector3()));
+  else if (body.tip) ends.push(at(body.tip));
+  else if (body.box && !body.surface) ends.push(at(body.box.pose));
+  for (const hung of body.hung) ends.push(in_world((body.flexible ? hung.now : hung.rest).p.clone()));
+  if (body.kind === 'strip' || body.kind === 'mesh') for (let k = 0; k < body.count; ++k) ends.push(motion.point(body, k, 1, new Vector3()));
+  if (body.surface) for (const corner of body.corners) solid.push(in_world(corner.clone()));
+  else if (body.box) {
+    const half = Math.max(...body.box.edges) / 2, middle = at(body.box.pose);
+    solid.push(middle.clone().addScalar(half), middle.addScalar(-half));
+  }
+  return { ends, solid };
+}
+
 export class View {
   constructor(element, runs) {
     this.element = element;
@@ -23,6 +40,7 @@ export class View {
     this.motions = runs.map(run => new Motion(run.animation));
     this.show = { trails: true, ghosts: true, axes: false, follow: false, sensors: true };
     this.scale = 1;
+    this.origin = new Vector3();
     // Without alpha, which three.js would ask for, the browser need not mix the picture with the page behind it.
     const canvas = document.createElement('canvas'), wanted = { alpha: false, antialias: true, preserveDrawingBuffer: true };
     const context = canvas.getContext('webgl2', wanted);
@@ -47,39 +65,35 @@ export class View {
 
   // The room that the motion takes, the size of the system, and which way is up.
   measure() {
-    const box = new Box3(), point = new Vector3(), first = new Box3(), way = new Box3();
+    const box = new Box3(), point = new Vector3(), first = new Box3(), way = new Box3(), near = new Box3(), near_first = new Box3(), root = new Vector3(), begin = new Vector3();
     let travel = 0;
     for (const motion of this.motions) {
       const steps = Math.min(motion.times.length, 60);
       for (let s = 0; s < steps; ++s) {
         const i = Math.round(s * (motion.times.length - 1) / Math.max(1, steps - 1));
         motion.go(motion.times[i], 1);
+        if (motion.bodies.length) root.copy(motion.bodies[0].pose.p);
+        if (s === 0) begin.copy(root);
         for (const body of motion.bodies) {
-          const ends = [body.pose.p.clone(), motion.end_of(body, i, point).clone()];
-          for (const hung of body.hung) ends.push(hung.now.p.clone().copy(body.flexible ? hung.now.p : hung.rest.p).applyQuaternion(body.pose.q).add(body.pose.p));
-          if (body.kind === 'strip' || body.kind === 'mesh') for (let k = 0; k < body.count; ++k) ends.push(motion.point(body, k, 1, new Vector3()));
+          const { ends, solid } = places_of(motion, body);
           for (const end of ends) way.expandByPoint(end);
-          if (body.surface) for (const corner of body.corners) ends.push(corner.clone().applyQuaternion(body.pose.q).add(body.pose.p));
-          else if (body.box) {
-            const half = Math.max(...body.box.edges) / 2, p = new Vector3().fromArray(body.box.pose).applyQuaternion(body.pose.q).add(body.pose.p);
-            ends.push(p.clone().addScalar(half), p.clone().addScalar(-half));
-          }
-          for (const end of ends) {
+          for (const end of [...ends, ...solid]) {
             box.expandByPoint(end);
             if (s === 0) first.expandByPoint(end);
+            near.expandByPoint(end.sub(root));
+            if (s === 0) near_first.expandByPoint(end);
           }
         }
       }
-      if (motion.bodies.length) {
-        const at = i => motion.bodies[0] && new Vector3().fromArray(motion.numbers, i * motion.size);
-        travel = Math.max(travel, at(0).distanceTo(at(motion.times.length - 1)));
-      }
+      travel = Math.max(travel, begin.distanceTo(root)); // from the first to the last moment
     }
-    if (box.isEmpty()) box.expandByPoint(new Vector3());
+    for (const room of [box, near, near_first]) if (room.isEmpty()) room.expandByPoint(new Vector3());
     this.size = first.getSize(point).length() || box.getSize(point).length() || 1e-3; // a point has none
-    // A system that goes far away is followed, and what it takes up at the beginning is looked at.
+    // A system that goes far away is followed.
     this.show.follow = travel > 2 * this.size;
     this.box = this.show.follow ? first : box;
+    // What it takes up about its root then, however it turns; where its parts go far from each other, at the beginning.
+    this.near = near.getSize(point).length() > 4 * this.size ? near_first : near;
     const extent = (way.isEmpty() ? box : way).getSize(new Vector3()).toArray();
     const g = new Vector3().fromArray(this.runs[0].animation.gravity);
     const thin = extent.indexOf(Math.min(...extent));
@@ -139,20 +153,55 @@ export class View {
     if (place.textContent !== caption) place.textContent = caption;
   }
 
+  // How long a metre is in the middle of the picture, where no squares say so.
+  write_rule() {
+    const rule = document.getElementById('rule'), [line, words] = rule.children;
+    rule.hidden = this.grid.visible && !this.show.follow;
+    if (rule.hidden) return;
+    const pixel = 2 * this.camera.position.distanceTo(this.controls.target) * Math.tan(this.camera.fov * Math.PI / 360) / this.height;
+    const length = round_down(150 * pixel), told = measured(length, 'm'), width = `${(length / pixel).toFixed(1)}px`;
+    if (line.style.width !== width) line.style.width = width;
+    if (words.textContent !== told) words.textContent = told;
+  }
+
   // The ways of the outermost points of bodies that carry nothing.
   add_trails(colours) {
     this.trails = new Group();
     this.motions.forEach((motion, i) => {
       for (const body of motion.bodies) {
         if (body.children.length > 0) continue;
-        const points = Array.from(motion.times, (_, k) => motion.end_of(body, k, new Vector3()));
-        const line = new Line(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({ color: colours[i % colours.length], transparent: true, opacity: 0.75 }));
+        const points = new Float64Array(3 * motion.times.length), geometry = new BufferGeometry(), end = new Vector3();
+        motion.times.forEach((_, k) => motion.end_of(body, k, end).toArray(points, 3 * k));
+        geometry.setAttribute('position', new BufferAttribute(new Float32Array(points.length), 3));
+        const line = new Line(geometry, new LineBasicMaterial({ color: colours[i % colours.length], transparent: true, opacity: 0.75 }));
         line.frustumCulled = false;
-        line.userData.motion = motion;
+        Object.assign(line.userData, { motion, points });
         this.trails.add(line);
       }
     });
     this.scene.add(this.trails);
+    this.lay_trails();
+  }
+  lay_trails() {
+    const { x, y, z } = this.origin;
+    for (const line of this.trails.children) {
+      const { position } = line.geometry.attributes, { points } = line.userData;
+      for (let k = 0, i = 0; k < position.count; ++k, i += 3) position.setXYZ(k, points[i] - x, points[i + 1] - y, points[i + 2] - z);
+      position.needsUpdate = true;
+      line.position.copy(this.origin);
+    }
+  }
+
+  // What is not drawn in axes of a body stands about a place near what is looked at, as no more than a thousand times as
+  // far away as the camera its numbers of 32 bits are less than a tenth of a pixel off.
+  place_near() {
+    const { target } = this.controls, far = this.origin.distanceTo(target) > 1000 * this.camera.position.distanceTo(target);
+    if (far) {
+      this.origin.copy(target);
+      this.lay_trails();
+    }
+    if (far || this.moved) for (const shapes of this.shapes) shapes.place(this.origin);
+    this.moved = false;
   }
 
   root(out) {
@@ -186,18 +235,15 @@ export class View {
       this.controls.target.add(step);
     }
     this.follow_from = now;
+    this.moved = true;
     this.draw();
   }
 
   // Looks from a direction at all of the motion.
   look(from) {
-    const center = this.box.getCenter(new Vector3()), half = this.box.getSize(new Vector3()).multiplyScalar(0.5);
-    if (this.show.follow) {
-      this.motions[0].go(this.time ?? 0, this.scale);
-      const corners = new Box3();
-      for (const body of this.motions[0].bodies) corners.expandByPoint(body.pose.p);
-      corners.getCenter(center);
-    }
+    const box = this.show.follow ? this.near : this.box;
+    const center = box.getCenter(new Vector3()), half = box.getSize(new Vector3()).multiplyScalar(0.5);
+    if (this.show.follow) center.add(this.root(new Vector3()));
     const direction = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] }[from];
     const d = direction ? new Vector3().fromArray(direction) : this.home();
     this.camera.up.copy(Math.abs(d.dot(this.up)) > 0.99 ? (from === 'z' ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1)) : this.up);
@@ -265,7 +311,12 @@ export class View {
 
   draw() {
     if (!this.scene || !this.width) return; // a frame of the wrong size would be drawn twice
+    this.place_near();
+    this.write_rule();
+    // From where one looks to what is looked at, wherever in the world that is.
     this.key.position.copy(this.camera.position).addScaledVector(this.up, this.size);
+    this.key.target.position.copy(this.controls.target);
+    this.key.target.updateMatrixWorld();
     this.renderer.render(this.scene, this.camera);
     this.seen_from.copy(this.camera.position);
   }

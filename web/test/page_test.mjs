@@ -13,6 +13,7 @@ import { clock_of, speeds_of } from '../src/playback.js';
 import { axis_ticks, ends_of, labels_of } from '../src/ticks.js';
 import { certificate_rows } from '../src/words.js';
 import { in_browser, opened, text } from './browser.mjs';
+import { check_far } from './far.mjs';
 import { check_gltf } from './gltf.mjs';
 import { check_landmarks } from './landmarks.mjs';
 import { check_long_runs, check_rows } from './rows.mjs';
@@ -459,6 +460,7 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   await check_columns(browser, troubles);
   await check_several(browser, troubles);
   await check_long_runs(browser, folder, run, troubles);
+  await check_far(browser, folder, run, troubles);
   await check_sensors(browser, troubles);
   await check_points(browser, troubles);
   for (const name of ['panel', 'mesh', 'looks']) await (await opened(browser, join(folder, name, 'report.html'), 'theme=dark', troubles)).close();

@@ -51,6 +51,10 @@ function check_passed() {
   const limit = (what, value) => ({ what, value, limit: 0.1 });
   const indicators = [limit('energy of a mode', 0.67), limit('tip deflection', 0.2), limit('load', 0.05), limit('rate', null)];
   assert.deepEqual(passed_unseen({ validity: [{ name: 'tip deflection' }], run: { certificate: { indicators } } }), ['energy of a mode: 0.67, limit 0.1']);
+  // Also where no limit has a curve.
+  const run = (...list) => ({ table: { columns: [{ name: 't', unit: 's', data: [0, 1] }] }, validity: [], time: [0, 1], run: { certificate: { indicators: list } } });
+  assert.deepEqual(grouped([run(indicators[2])]), []);
+  assert.deepEqual(grouped([run(indicators[2]), run(indicators[0])]).map(g => [g.title, g.series.length]), [['Validity: passed limits without a curve', 0]]);
 }
 
 export function check_rows() {
