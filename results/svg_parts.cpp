@@ -52,8 +52,9 @@ Pen pen(std::size_t i) {
 }
 
 std::string stroke(const Pen& p) {
-  return fmt::format(R"(fill="none" stroke="{}" stroke-width="{}" stroke-dasharray="{}")", p.colour, p.thickness,
-                     p.dashes);
+  // Mitred corners reach beyond the points of a peak.
+  return fmt::format(R"(fill="none" stroke-linejoin="round" stroke="{}" stroke-width="{}" stroke-dasharray="{}")",
+                     p.colour, p.thickness, p.dashes);
 }
 
 std::string escaped(const std::string& text) {

@@ -173,6 +173,8 @@ class Panel {
       hooks: {
         // uPlot empties its legend once it has drawn.
         draw: [u => { this.mark(u, limit); queueMicrotask(() => { this.told = -1; this.at(); }); }],
+        // It empties it too where the pointer leaves any of the plots.
+        setCursor: [u => { if (u.cursor.idx == null) queueMicrotask(() => { this.told = -1; this.at(); }); }],
         ready: [u => u.over.addEventListener('click', () => { if (!this.dragged(u)) this.owner.seek(u.posToVal(u.cursor.left, 'x')); })],
       },
     }, this.aligned(curves), holder);

@@ -134,6 +134,9 @@ export function show_runs(page) {
     addEventListener('afterprint', paint);
     addEventListener('keydown', e => {
       if (e.target.matches('input[type=search], select') || e.ctrlKey || e.metaKey || e.altKey || $('keys').open) return;
+      // A control that was reached by the keyboard keeps the keys that work it.
+      if (e.target.matches('input:focus-visible, button:focus-visible, summary:focus-visible, a:focus-visible') &&
+        (e.key === ' ' || (e.target.type === 'range' && /^(Arrow|Home|End)/.test(e.key)))) return;
       const step = (end - start) / Math.max(1, runs[0].animation.times.length - 1) * (e.shiftKey ? 10 : 1);
       const keys = {
         ' ': () => playing ? pause() : play(),
@@ -165,7 +168,7 @@ export function show_runs(page) {
   write_words($('words'), runs);
   write_sources($('sources'), runs);
   paint();
-  seek(wish.has('t') ? Number(wish.get('t')) : start);
+  seek(wish.has('t') && Number.isFinite(Number(wish.get('t'))) ? Number(wish.get('t')) : start);
   view?.resize();
   if (wish.get('play') !== '0' && !wish.has('t') && !matchMedia('(prefers-reduced-motion: reduce)').matches) play();
   document.body.dataset.ready = 'true';

@@ -256,6 +256,26 @@ async function check_controls(browser, troubles) {
   const stopped = await text(page, '#clock');
   await page.waitForTimeout(200);
   assert.equal(await text(page, '#clock'), stopped, 'it pauses');
+  // A control that the keyboard has reached keeps its keys.
+  await page.focus('#trails');
+  const trails = await page.isChecked('#trails');
+  await page.keyboard.press('Space');
+  assert.equal(await page.isChecked('#trails'), !trails);
+  await page.focus('#scale');
+  await page.keyboard.press('End');
+  assert.equal(await page.inputValue('#scale'), '2');
+  await page.keyboard.press('Home');
+  await page.waitForTimeout(200);
+  assert.equal(await text(page, '#clock'), stopped, 'the time stays');
+  // Legends have the numbers at the time of the view where no pointer asks for others.
+  const legend = () => page.$$eval('figure:not([hidden]) .u-value', all => all.map(v => v.textContent));
+  const told = await legend();
+  assert.ok(told.length > 2 && !told.includes('–'), told.join());
+  await page.hover('figure:not([hidden]) .u-over', { position: { x: 40, y: 40 } });
+  await page.waitForFunction(was => document.querySelector('figure:not([hidden]) .u-value').textContent !== was, told[0]);
+  await page.mouse.move(2, 2);
+  await page.waitForFunction(was => document.querySelector('figure:not([hidden]) .u-value').textContent === was, told[0]);
+  assert.deepEqual(await legend(), told);
   await page.click('[data-view=z]');
   await page.fill('#filter', 'energy');
   const shown = await page.$$eval('figure', all => all.filter(f => !f.hidden).map(f => f.querySelector('.name').textContent));
@@ -271,6 +291,9 @@ async function check_controls(browser, troubles) {
   const sheet = await page.pdf({ printBackground: true });
   assert.ok(sheet.length > 50000, 'it prints');
   await page.close();
+  const astray = await opened(browser, join(folder, 'arm/report.html'), 't=soon&play=0', troubles);
+  assert.equal(await text(astray, '#clock'), '0.000 s', 'a time that is no number is the start');
+  await astray.close();
 }
 
 // Where frames come late a moving picture has fewer pixels as far as fewer help; one that stands has all of them.
