@@ -211,7 +211,7 @@ export class Modes {
     for (const text of this.about(b, m)) this.card.append(element('div', text));
     if (!m.shape) return;
     if (this.swept) this.card.append(element('div', `like the branch's first shape (MAC): ${m.mac.toFixed(3)}`, { class: 'soft' }));
-    this.card.append(element('p', 'Kinetic energy that each coordinate would have alone, in shares, and phases', { class: 'soft' }));
+    this.card.append(element('p', 'Shares by the kinetic energy that each coordinate would have alone, and phases', { class: 'soft' }));
     const bars = element('table', null, { class: 'bars' });
     for (const [name, share, phase] of m.shape) {
       const row = element('tr'), cell = element('td'), bar = element('div', null, { class: 'level' });
