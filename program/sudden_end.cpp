@@ -26,9 +26,10 @@ bool due = false;
 struct Libraries {
   std::array<ElfW(Addr), 256> places{};
   std::size_t count = 0;
+  /// Where there are more than places, nobody knows, and no plugin is named.
   [[nodiscard]] bool has(ElfW(Addr) place) const {
     const auto end = places.begin() + static_cast<std::ptrdiff_t>(count);
-    return std::find(places.begin(), end, place) != end;
+    return count == places.size() || std::find(places.begin(), end, place) != end;
   }
 };
 Libraries own_libraries;

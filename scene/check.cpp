@@ -45,7 +45,8 @@ bool depends_on_hinge(const ParameterSpec& spec) {
 
 /// A unit with a signal's in the place of that of an angle.
 std::string of_signal(std::string unit, const std::string& signal) {
-  return unit == "rad" ? signal : unit.replace(unit.find("rad"), 3, '(' + signal + ')');
+  const bool whole = unit == "rad" || signal.find_first_of(" /") == std::string::npos;
+  return unit.replace(unit.find("rad"), 3, whole ? signal : '(' + signal + ')');
 }
 
 /// The first name of a list, or the one that there is; empty where there is none.

@@ -268,7 +268,7 @@ std::string with_plain_spaces(std::string_view text) {
 struct Written {
   double number = 0;
   std::optional<Unit> unit;
-  std::string problem;
+  std::string unit_text, problem;
 };
 
 Written read_written(std::string_view given) {
@@ -289,6 +289,7 @@ Written read_written(std::string_view given) {
   }
   UnitReading unit = read_unit(rest);
   read.unit = unit.unit;
+  read.unit_text = rest;
   read.problem = std::move(unit.problem);
   return read;
 }
@@ -307,12 +308,7 @@ QuantityReading read_quantity(std::string_view given, std::string_view wanted) {
   const UnitReading expected = read_unit(wanted.empty() ? "1" : wanted);
   if (!expected.unit) return {{}, fmt::format("units are not known here: write a number in {}", wanted)};
   if (read.unit->dimension == expected.unit->dimension) return {read.unit->to(*expected.unit, read.number), {}};
-  const std::string plain = with_plain_spaces(given);
-  const std::string_view text = plain;
-  double number = 0;
-  std::string_view unit = text.substr(leading_number(text, number));
-  while (unit.starts_with(' ')) unit.remove_prefix(1);
-  return {{}, fmt::format("'{}' is a wrong unit here", unit)};
+  return {{}, fmt::format("'{}' is a wrong unit here", read.unit_text)};
 }
 
 }  // namespace withy

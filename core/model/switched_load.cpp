@@ -334,7 +334,7 @@ std::string unlike(const BoundLoad& a, const BoundLoad& b) {
     return load.discrete() == nullptr ? 0 : load.discrete()->switches();
   };
   const auto counts = [](std::size_t one, std::size_t other) {
-    return " (" + std::to_string(one) + " numbers, which are " + std::to_string(other) + " then)";
+    return " (" + std::to_string(one) + " before, " + std::to_string(other) + " after)";
   };
   if (!std::equal(a.frames().begin(), a.frames().end(), b.frames().begin(), b.frames().end(), same))
     return "where the load acts";
@@ -343,7 +343,8 @@ std::string unlike(const BoundLoad& a, const BoundLoad& b) {
     return "what the load keeps between instants" + counts(discrete_states(a), discrete_states(b));
   if (continuous_states(a) != continuous_states(b))
     return "the load's continuous states" + counts(continuous_states(a), continuous_states(b));
-  if (switches(a) != switches(b)) return "at what the load switches";
+  if (switches(a) != switches(b))
+    return "the functions at whose zeros the load switches" + counts(switches(a), switches(b));
   return {};
 }
 
