@@ -107,19 +107,26 @@ class Staying(concurrent.futures.Executor):
         return self.pool.submit(task, *arguments) if self.ending >= 0 else self.pool.submit(_run_and_stay, task, *arguments)
 
 
-def test_a_killed_worker_loses_no_case(plan, undisturbed):
+def test_a_killed_worker_loses_no_case_and_leaves_no_process(plan, undisturbed):
     store = plan.parent / "killed"
-    killed = []
+    killed, workers = [], []
     with processes() as executor:
 
         def kill(done, all):  # once: the pool ends the others, and a process that has ended cannot be killed
             if not killed:
-                killed.append(next(iter(executor._processes)))
+                workers.extend(executor._processes.values())
+                killed.append(workers[0].pid)
                 os.kill(killed[0], signal.SIGKILL)
 
         with pytest.raises(concurrent.futures.BrokenExecutor):
             withy.sweep(plan, Staying(executor, 20), out=store, parts=60, progress=kill)
     assert killed
+    for worker in workers:  # the pool ends those that were not killed; else Python waits for them without end
+        worker.join(60)
+    left = [worker for worker in workers if worker.is_alive()]
+    for worker in left:
+        worker.kill()
+    assert not left
     with processes() as executor:
         assert table(withy.sweep(plan, executor, out=store, parts=60)) == table(undisturbed)
 

@@ -139,6 +139,11 @@ def sweep(plan: Path, executor: concurrent.futures.Executor | None = None, *, ou
                 if stop is not None:
                     stopped = stop
                     break
+        except concurrent.futures.BrokenExecutor:
+            # The executor is ending all tasks with this error. Where it meets one that has been cancelled meanwhile,
+            # CPython 3.11's pool of processes dies of it, leaves its other processes, and the program never ends.
+            concurrent.futures.wait(tasks)
+            raise
         finally:  # after an error, or a failure at which the plan stops
             running = [task for task in tasks if not task.cancel()]
         concurrent.futures.wait(running)  # parts that have begun go on to their end
