@@ -63,18 +63,37 @@ std::vector<Eigen::Index> turning(const Model& model, const std::vector<Eigen::I
 }
 
 /// Moves by a displacement or, where closed loops do not reach so far, by the half that they do reach.
-/// \returns whether they reach any
-bool take(const TangentDynamics& dynamics, State& state, Eigen::VectorXd displacement) {
-  constexpr int most_halves = 20;
-  for (int halves = 0; halves < most_halves; ++halves, displacement *= 0.5) {
+/// \returns the part of the displacement that was taken; 0 where they reach none
+double take(const TangentDynamics& dynamics, State& state, const Eigen::VectorXd& displacement) {
+  constexpr double least_part = 1e-6;
+  for (double part = 1; part > least_part; part *= 0.5) {
     State there = state;
-    dynamics.displace(there.y, displacement);
+    dynamics.displace(there.y, part * displacement);
     if (std::any_of(there.y.begin(), there.y.end(), [](double y) { return std::isnan(y); })) continue;
     state = std::move(there);
-    return true;
+    return part;
   }
-  return false;
+  return 0;
 }
+
+/// What becomes of 1/step as the forces are followed: it falls as they do, and fast where K foretells how they change,
+/// as in a fall under gravity that is long as against what stiffness allows and has the same forces all the way.
+class Slowness {
+ public:
+  explicit Slowness(double first) : value_(first) {}
+  [[nodiscard]] double value() const { return value_; }
+  /// \param foretold the forces after the step, by those before it and K
+  void follow(const Eigen::VectorXd& before, const Eigen::VectorXd& foretold, const Eigen::VectorXd& forces) {
+    const double misfit = (forces - foretold).norm();
+    value_ *= misfit <= as_foretold * before.norm() ? fastest_fall
+                                                    : std::clamp(forces.norm() / before.norm(), fastest_fall, 2.0);
+  }
+
+ private:
+  static constexpr double fastest_fall = 0.1;
+  static constexpr double as_foretold = 0.1;
+  double value_;
+};
 
 }  // namespace
 
@@ -94,21 +113,27 @@ std::optional<Relaxation> relaxed(const TangentDynamics& dynamics, const State& 
   };
   Free here(dynamics, start, free);
   Relaxation found{start};
-  double slowness = 0, before = 0;  // 1/step; size of the forces
+  std::optional<Slowness> slowness;
+  Eigen::VectorXd before, foretold;  // forces
   for (; found.steps < most_relaxations; ++found.steps) {
     if (!here.look(found.state)) return {};
-    const double size = here.forces.norm();
-    slowness = found.steps == 0 ? std::max(here.greatest, turn_of(here.in_own_units(here.forces)) / longest_turn)
-                                : slowness * std::clamp(size / before, 0.1, 2.0);
-    before = size;
-    here.K.diagonal().array() += here.stable() ? slowness : std::max(slowness, -2 * here.least);
-    const Eigen::VectorXd step = -here.in_own_units(here.K.partialPivLu().solve(here.forces));
+    if (slowness)
+      slowness->follow(before, foretold, here.forces);
+    else
+      slowness.emplace(std::max(here.greatest, turn_of(here.in_own_units(here.forces)) / longest_turn));
+    const double added = here.stable() ? slowness->value() : std::max(slowness->value(), -2 * here.least);
+    here.K.diagonal().array() += added;
+    const Eigen::VectorXd step = -here.K.partialPivLu().solve(here.forces);
     if (!step.allFinite()) return {};
-    const double turn = turn_of(step);
-    if (here.stable() && slowness <= nearly_newton * here.greatest && turn < longest_turn) return found;
+    const double turn = turn_of(here.in_own_units(step));
+    if (here.stable() && slowness->value() <= nearly_newton * here.greatest && turn < longest_turn) return found;
+    const double part = std::min(1.0, longest_turn / std::max(turn, longest_turn));
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.size()));
-    moved(free) = step * std::min(1.0, longest_turn / std::max(turn, longest_turn));
-    if (!take(dynamics, found.state, moved)) return {};
+    moved(free) = part * here.in_own_units(step);
+    const double taken = part * take(dynamics, found.state, moved);
+    if (taken == 0) return {};
+    before = here.forces;
+    foretold = (1 - taken) * before - taken * added * step;  // K step = −forces − added step
   }
   return {};
 }

@@ -19,10 +19,10 @@ bool lasts(const TangentDynamics& dynamics, const State& state, const Held& held
 
 /// Follows the forces r of the free coordinates from a state: δ' = −r in units in which M_ii is 1, by linearly implicit
 /// Euler steps that grow as r becomes less, which makes them Newton's in the end (pseudo-transient continuation, Kelley
-/// & Keyes, SIAM J. Numer. Anal. 35, 1998). They are kept so short that no hinge turns by more than 0.3 rad, and that
-/// 1/step + K is positive where K, its symmetric part, is not: a step goes down in a potential. Rates stay those of the
-/// state, as in find_steady_state, and states of loads stay. Nothing where a hundred steps do not lead to a balance, a
-/// force is not finite, or more than 300 coordinates are free.
+/// & Keyes, SIAM J. Numer. Anal. 35, 1998), and ten times after each that changes r as K foretells. They are kept so
+/// short that no hinge turns by more than 0.3 rad, and that 1/step + K is positive where K, its symmetric part, is not:
+/// a step goes down in a potential. Rates stay those of the state, as in find_steady_state; states of loads stay.
+/// Nothing where a hundred steps do not lead to a balance, a force is not finite, or over 300 coordinates are free.
 /// \param start in which no mode moves
 std::optional<Relaxation> relaxed(const TangentDynamics& dynamics, const State& start, const Held& held);
 

@@ -135,6 +135,26 @@ TEST(Balance, OfAChainThatIsFarFromItIsWhereItHangs) {
   }
 }
 
+// The step along the forces is at first as short as the beam's stiffness asks, and weight is the same all the way: one
+// that grows only as the forces fall comes nowhere, and Newton's method ends many turns away.
+TEST(Balance, OfABeamThatStartsLevelIsWhereItHangs) {
+  for (const std::string stiffness : {"8", "80", "800", "8000", "8e6"}) {
+    SCOPED_TRACE(stiffness + " N m^2");
+    const Prepared prepared =
+        scene_of("\ngravity: [0, -9.81, 0]\nbodies: {flap: {type: beam, length: 2, mass_per_length: " +
+                 std::string("0.5, bending_y: {stiffness: ") + stiffness +
+                 ", modes: 2}}}\nhinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, "
+                 "child: flap}}\n");
+    const Equilibrium found = find_equilibrium(at_start(prepared), {}, plugins());
+    ASSERT_EQ(found.problem, "");
+    const Layout& layout = prepared.model().layout();
+    const std::vector<double>& y = found.steady.state.y;
+    EXPECT_NEAR(y[layout.hinge("axle")->position], -std::numbers::pi / 2, 1e-9);
+    for (std::size_t i = 0; i < layout.positions; ++i)
+      if (i != layout.hinge("axle")->position) EXPECT_NEAR(y[i], 0, 1e-9) << i;
+  }
+}
+
 TEST(Balance, NearAnUprightPendulumIsThatOne) {
   const Equilibrium found = find_equilibrium(at_start(scene_of(chain(2, "1.4"))), {}, plugins());
   ASSERT_EQ(found.problem, "");
