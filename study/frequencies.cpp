@@ -13,17 +13,12 @@
 namespace withy::study {
 namespace {
 
-/// Share of a speed in Σ |δ_i|² M_ii.
-double share(const Mode& mode, const Eigen::VectorXd& masses, Eigen::Index speed) {
-  return std::norm(mode.shape[speed]) * masses[speed] / mode.shape.cwiseAbs2().dot(masses);
-}
-
 /// Of the mode that bears the name; nothing where it is no vibration: rigid, comes to rest or grows.
 std::optional<double> frequency_of(const ModesAt& at, const std::string& name) {
   const Eigen::Index speed = std::find(at.names.begin(), at.names.end(), name) - at.names.begin();
   const Mode* mode = nullptr;
   for (const Mode& m : at.modes) {
-    if (mode == nullptr || share(m, at.masses, speed) > share(*mode, at.masses, speed)) mode = &m;
+    if (mode == nullptr || m.shares[speed] > mode->shares[speed]) mode = &m;
   }
   if (mode == nullptr || mode->rigid || mode->single || unstable(at, *mode)) return std::nullopt;
   return mode->frequency();

@@ -30,22 +30,22 @@ void find_sampled_modes(const Configuration& c, const Tangents& tangents, ModesA
   const SampledLoads sampled(motions);
   const SampledLoads::Held held{
       motions.A(), sampled.moved(sampled.efforts()), Eigen::MatrixXd::Zero(motions.size(), 0), {}, {}};
-  const Eigen::VectorXd masses = tangents.mass.diagonal()(motions.free()).cwiseAbs();
+  const Eigen::MatrixXd mass = tangents.mass(motions.free(), motions.free());
   const auto between = [&](const Eigen::MatrixXcd& columns) {
     SampledLoads::Course course = sampled.course(held, columns);
-    for (Eigen::MatrixXcd& motion : course.motions) motion = motion.topRows(masses.size()).eval();
+    for (Eigen::MatrixXcd& motion : course.motions) motion = motion.topRows(mass.rows()).eval();
     return MotionOverPeriod{course.fastest, std::move(course.times), std::move(course.weights),
                             std::move(course.motions)};
   };
-  const Eigen::Index n = motions.size(), states = n - 2 * masses.size();
+  const Eigen::Index n = motions.size(), states = n - 2 * mass.rows();
   const Eigen::MatrixXd by_held = sampled.moved(0 * sampled.efforts());
   const Eigen::MatrixXd unheld =
       unheld_motions(tangents, c.held(),
                      {c.dynamics().on_motions(c.state().y, sampled.efforts()), by_held.bottomRows(states),
                       sampled.renewal(held).bottomRows(sampled.size())});
-  MapModes found = modes_of_map(
-      {sampled.map(held).first, sampled.period(), balancing_units(motions.A(), masses), masses, unheld, between},
-      c.held());
+  MapModes found = modes_of_map({sampled.map(held).first, sampled.period(),
+                                 balancing_units(motions.A(), mass.diagonal().cwiseAbs()), mass, unheld, between},
+                                c.held());
   at.modes = std::move(found.modes);
   at.forgotten = found.gone;
   at.period = sampled.period();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/analysis/modes.hpp"
 #include "withy/core/shape/vibrations.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
@@ -78,8 +79,7 @@ void add_vibrating(const EquationsOfMotion& equations, const Eigen::MatrixXd& st
     const double square = found.squares[k];
     Vibrating v{std::sqrt(square), 0.5 * rates[k] * rates[k], 0, k - found.rigid(),
                 0.5 * accelerations[k] * accelerations[k] / square};
-    const Eigen::VectorXd shares = vectors.col(k).cwiseAbs2().cwiseProduct(mass.diagonal());
-    shares.maxCoeff(&v.speed);
+    kinetic_shares(mass, vectors.col(k).cast<std::complex<double>>()).maxCoeff(&v.speed);
     v.speed = free[static_cast<std::size_t>(v.speed)];
     all.push_back(v);
   }

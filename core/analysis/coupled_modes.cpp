@@ -43,12 +43,14 @@ std::vector<CoupledRoot> roots_beside_zeros(const Unchained& unchained) {
 class Naming {
  public:
   /// \param units of z: what the vectors are times these
-  Naming(const Held& held, Eigen::VectorXd units)
+  /// \param mass of the free speeds
+  Naming(const Held& held, Eigen::VectorXd units, Eigen::MatrixXd mass)
       : free_(free_speeds(held)),
         m_(static_cast<Eigen::Index>(free_.size())),
         speeds_(static_cast<Eigen::Index>(held.size())),
         states_(units.size() - 2 * m_),
-        units_(std::move(units)) {}
+        units_(std::move(units)),
+        mass_(std::move(mass)) {}
 
   /// \param single a real eigenvalue
   [[nodiscard]] Mode mode(const CoupledRoot& root, bool single) const {
@@ -74,6 +76,8 @@ class Naming {
     mode.shape = Eigen::VectorXcd::Zero(speeds_ + states_);
     mode.shape(free_) = z.head(m_);
     mode.shape.tail(states_) = z.tail(states_);
+    mode.shares = Eigen::VectorXd::Zero(speeds_ + states_);
+    mode.shares(free_) = kinetic_shares(mass_, z.head(m_));
     mode.dominant = dominant < m_ ? free_[static_cast<std::size_t>(dominant)] : speeds_ + dominant - m_;
     mode.partner_dominant = mode.dominant;
     if (const Complex most = mode.shape[mode.dominant]; most != 0.0) mode.shape /= most;
@@ -83,6 +87,7 @@ class Naming {
   std::vector<Eigen::Index> free_;
   Eigen::Index m_, speeds_, states_;
   Eigen::VectorXd units_;
+  Eigen::MatrixXd mass_;
 };
 
 /// The modes at zero. Directions that end chains have two zeros each: they go on at any rate.
@@ -113,18 +118,18 @@ std::vector<Mode> modes_at_zero(const Unchained& unchained, const Eigen::MatrixX
   return modes;
 }
 
-/// Of λ + 2πik/T that in which most of the kinetic energy Σ M |λ δ|² is over a period; δ e^{−λt} is periodic. Of a real
-/// multiplier the lowest one, unless what vibrates in step with the samples has clearly more: what is held between
+/// Of λ + 2πik/T that in which most of the kinetic energy Σ M_ii |λ δ_i|² is over a period; δ e^{−λt} is periodic. Of a
+/// real multiplier the lowest one, unless what vibrates in step with the samples has clearly more: what is held between
 /// samples makes a ripple in any motion.
 Complex with_most_energy(Complex lambda, bool single, const MotionOverPeriod& motion, Eigen::Index column,
                          const PeriodMap& of) {
   constexpr double clearly = 10;
   const double round = 2 * std::numbers::pi / of.period;
   const auto energy = [&](Complex at) {
-    Eigen::VectorXcd part = Eigen::VectorXcd::Zero(of.masses.size());
+    Eigen::VectorXcd part = Eigen::VectorXcd::Zero(of.mass.rows());
     for (std::size_t i = 0; i < motion.times.size(); ++i)
       part += motion.weights[i] * std::exp(-at * motion.times[i]) * motion.displacements[i].col(column);
-    return std::norm(at) * part.cwiseAbs2().dot(of.masses);
+    return std::norm(at) * part.cwiseAbs2().dot(of.mass.diagonal().cwiseAbs());
   };
   Complex best = lambda;
   double greatest = (single ? clearly : 1) * energy(lambda);
@@ -167,7 +172,7 @@ std::vector<Mode> modes_with_states(const Tangents& tangents, const Held& held) 
   if (!A.allFinite()) throw std::domain_error("the derivatives at this state are not finite");
   const Eigen::VectorXd units = balancing_units(A, tangents.mass.diagonal()(free).cwiseAbs());
   const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
-  const Naming naming(held, units.cwiseInverse());
+  const Naming naming(held, units.cwiseInverse(), tangents.mass(free, free));
   const Eigen::MatrixXd unheld = units.asDiagonal() * unheld_motions(tangents, held);
   const Unchained unchained(balanced, unheld);
   std::vector<Mode> modes = modes_at_zero(unchained, unheld, naming);
@@ -189,7 +194,7 @@ MapModes modes_of_map(const PeriodMap& of, const Held& held) {
   const Eigen::MatrixXd rates = (of.map - Eigen::MatrixXd::Identity(n, n)) / of.period;
   // Motions have units that do for their equations: what nothing holds would be given one by rounding.
   units = units.cwiseQuotient(balance_of_states(in_units(rates), of.units.size())).eval();
-  const Naming naming(held, units.cwiseInverse());
+  const Naming naming(held, units.cwiseInverse(), of.mass);
   const Eigen::MatrixXd unheld = units.asDiagonal() * of.unheld;
   const Unchained unchained(in_units(rates), unheld);
   MapModes found{modes_at_zero(unchained, unheld, naming), zeros_of(in_units(of.map))};

@@ -27,7 +27,7 @@ struct PeriodMap {
   Eigen::MatrixXd map;
   double period = 0;       ///< [s]
   Eigen::VectorXd units;   ///< of the first elements of z, as from balancing_units
-  Eigen::VectorXd masses;  ///< M_ii of the free speeds
+  Eigen::MatrixXd mass;    ///< of the free speeds
   Eigen::MatrixXd unheld;  ///< columns of z that stay as they are, as from unheld_motions
   /// δ over a period, of motions that begin with these columns of z. A multiplier e^{λT} tells the frequency of λ but
   /// for multiples of 2π/T: it is the one with most of the kinetic energy in between.

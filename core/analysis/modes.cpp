@@ -135,10 +135,10 @@ Mode mode_of(const Root& first, const Root& partner, const Scaled& s, const std:
     shape(free) = s.scale.cast<Complex>().cwiseProduct(root.shape);
     return shape;
   };
-  const Eigen::VectorXd masses = t.mass.diagonal().cwiseAbs();
   mode.shape = displacements(first);
-  mode.shape.cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.dominant);
-  displacements(partner).cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.partner_dominant);
+  mode.shares = kinetic_shares(t.mass, mode.shape);
+  mode.shares.maxCoeff(&mode.dominant);
+  kinetic_shares(t.mass, displacements(partner)).maxCoeff(&mode.partner_dominant);
   if (mode.shape[mode.dominant] != 0.0) mode.shape /= Complex(mode.shape[mode.dominant]);
   return mode;
 }
@@ -176,6 +176,15 @@ std::vector<Mode> pairs_of(std::vector<const Root*> real, const Scaled& s, const
 }
 
 }  // namespace
+
+Eigen::VectorXd kinetic_shares(const Eigen::MatrixXd& mass, const Eigen::VectorXcd& shape) {
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(shape.size());
+  const auto moved = shape.head(mass.rows());
+  Eigen::VectorXd each = moved.conjugate().cwiseProduct(mass.cast<Complex>() * moved).real();
+  if (!(each.sum() > 0)) each = moved.cwiseAbs2().cwiseProduct(mass.diagonal().cwiseAbs());
+  if (const double all = each.sum(); all > 0) shares.head(mass.rows()) = each / all;
+  return shares;
+}
 
 double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b, const Eigen::VectorXd& weights) {
   const auto product = [&](const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) {

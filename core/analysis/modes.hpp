@@ -20,7 +20,8 @@ struct Mode {
   /// Displacements δ, one a speed, zero where held, then the continuous states of loads; the component that dominates
   /// is 1. Dimensions of the coordinates and states.
   Eigen::VectorXcd shape;
-  /// Speed with the greatest |δ_i|² M_ii. With continuous states of loads, which come behind the speeds, what takes
+  Eigen::VectorXd shares;  ///< of the kinetic energy, as kinetic_shares of `shape`
+  /// Speed with the greatest share. With continuous states of loads, which come behind the speeds, what takes
   /// part most: the greatest |w_i z_i|, w the left and z the right eigenvector of the first-order form (participation
   /// factors of Pérez-Arriaga, Verghese & Schweppe 1982), of a displacement with that of its rate.
   Eigen::Index dominant = 0;
@@ -46,6 +47,13 @@ struct Mode {
 /// smaller |λ| of each pair.
 /// \throws std::domain_error where the mass matrix of the free speeds is singular or anything is not finite.
 std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held);
+
+/// Shares of the kinetic energy of a shape: Re(δ̄_i (M δ)_i)/δᴴMδ of its speeds, which are first, and zero of what comes
+/// behind them. They add up to 1; one is negative where a coordinate moves against the momentum that the others give
+/// it. Where δᴴMδ is not positive, as of strict formulations that have broken down, those of each coordinate alone,
+/// |δ_i|² |M_ii|; all are zero where nothing moves.
+/// \param mass M, one row a speed
+Eigen::VectorXd kinetic_shares(const Eigen::MatrixXd& mass, const Eigen::VectorXcd& shape);
 
 /// Likeness of two shapes, |aᴴ W b|²/(aᴴ W a · bᴴ W b), W diagonal: 1 where they are proportional (modal assurance
 /// criterion).

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t most_shares = 8;
 constexpr std::size_t least_branches = 10;
 
-/// A shape in which equal numbers are equal kinetic energies.
+/// A shape in which equal numbers of coordinates that move alone are equal kinetic energies.
 Eigen::VectorXcd weighted(const study::ModesAt& at, const Mode& mode) {
   return mode.shape.cwiseProduct(at.masses.cwiseAbs().cwiseSqrt().cast<std::complex<double>>());
 }
@@ -30,19 +30,18 @@ double likeness(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {
   return a.size() == b.size() && sizes > 0 ? std::norm(a.dot(b)) / sizes : 0;
 }
 
-/// The greatest shares of the kinetic energy: name, share, phase [deg] against the greatest.
-Json shares_json(const study::ModesAt& at, const Eigen::VectorXcd& shape) {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(shape.size()));
+/// The shares of the kinetic energy, the greatest sizes first: name, share, phase [deg] against the first.
+Json shares_json(const study::ModesAt& at, const Mode& mode) {
+  const Eigen::VectorXd sizes = mode.shares.cwiseAbs();
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(sizes.size()));
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return std::norm(shape[a]) > std::norm(shape[b]); });
-  const double all = shape.squaredNorm();
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return sizes[a] > sizes[b]; });
   Json list = Json::array();
-  if (!(all > 0)) return list;  // nothing moves: a state of a load alone
+  if (sizes.isZero(0)) return list;  // nothing moves: a state of a load alone
   for (std::size_t k = 0; k < std::min(order.size(), most_shares); ++k) {
-    const double share = std::norm(shape[order[k]]) / all;
-    if (k > 0 && !(share > 1e-3)) break;
-    const double phase = std::arg(shape[order[k]] / shape[order[0]]) * 180 / std::numbers::pi;
+    const double share = mode.shares[order[k]];
+    if (k > 0 && !(std::abs(share) > 1e-3)) break;
+    const double phase = std::arg(mode.shape[order[k]] / mode.shape[order[0]]) * 180 / std::numbers::pi;
     list.push_back({at.names[static_cast<std::size_t>(order[k])], share, std::round(phase)});
   }
   return list;
@@ -69,7 +68,7 @@ Json branch_json(const study::ModesOf& run, std::size_t branch) {
                       {"state", study::behaviour(at, m)},
                       {"dominated_by", study::dominating(at, m)},
                       {"mac", likeness(first, shape)},
-                      {"shape", shares_json(at, shape)}});
+                      {"shape", shares_json(at, m)}});
   }
   return {{"number", branch + 1}, {"at", std::move(values)}};
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -84,6 +85,43 @@ loads: {spring: {type: hinge-spring, hinge: axle, stiffness: 8, damping: CCC, fr
   const Mode slow = steady_modes(over, {})[0];
   EXPECT_NEAR(slow.eigenvalue.real(), -5 + std::sqrt(21.0), 1e-12);
   EXPECT_NEAR(slow.partner.real(), -5 - std::sqrt(21.0), 1e-12);
+}
+
+/// Three disks on a shaft that nothing holds. Its momentum stays zero as it vibrates, and with it the share of the
+/// first angle, by which all turn, although that angle moves most: of itself it would have two thirds.
+TEST(FreeShaft, names_vibrations_after_what_stores_their_energy) {
+  AnalysedScene c(R"(format: withy/1
+time: {end: 1}
+bodies:
+  a: {type: rigid, mass: 1, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+  b: {type: rigid, mass: 1, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+  c: {type: rigid, mass: 1, inertia: [10, 10, 10, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
+  first: {type: revolute, axis: [0, 0, 1], parent: a, child: b}
+  second: {type: revolute, axis: [0, 0, 1], parent: b, child: c}
+loads:
+  one: {type: hinge-spring, hinge: first, stiffness: 10}
+  two: {type: hinge-spring, hinge: second, stiffness: 10}
+)",
+                  "quadratic");
+  const std::vector<Mode> modes = steady_modes(c, {});
+  ASSERT_EQ(modes.size(), 3U);
+  const Mode& slow = modes[1];
+  // λ² of J₁ θ̈₁ = k φ₁, J₂ θ̈₂ = k (φ₂ − φ₁), J₃ θ̈₃ = −k φ₂ with φ₁ = θ₂ − θ₁, φ₂ = θ₃ − θ₂.
+  const double x = slow.frequency() * slow.frequency() / 1000;
+  EXPECT_NEAR(x * x - 3.001 * x + 1.002, 0, 1e-9);
+  EXPECT_NEAR(slow.shares[c.speed("axle")], 0, 1e-9);
+  EXPECT_NEAR(slow.shares.sum(), 1, 1e-12);
+  const std::array<double, 3> inertia = {0.01, 0.01, 10};
+  double theta = 0, kinetic = 0, of_second = 0;
+  for (int i = 0; i < 3; ++i) {
+    theta += slow.shape[i].real();
+    kinetic += inertia[static_cast<std::size_t>(i)] * theta * theta;
+    if (i == 2) of_second = inertia[2] * theta * slow.shape[2].real();
+  }
+  EXPECT_NEAR(slow.shares[c.speed("second")], of_second / kinetic, 1e-9);
+  EXPECT_EQ(slow.dominant, c.speed("second"));
 }
 
 /// A disk that is braked and not held stays anywhere and comes to rest, λ = 0 and −c/J: two motions, of which only one

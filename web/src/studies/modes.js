@@ -55,7 +55,7 @@ export class Modes {
 
   words(stands) {
     if (stands) return 'Modes of equal blades by the multi-blade transform: frequencies that an instrument on what does not turn sees, named after the blades\' coordinate and the way its pattern runs round. Branches are followed by shape: a name is that at the beginning and, where it becomes another, at the end. What does not swing has the frequency 0. Triangles mark motions that grow.';
-    const most = this.data.loops ? 'what takes part most, a coordinate or a state of a load' : 'the coordinate that alone would have most of the kinetic energy';
+    const most = this.data.loops ? 'what takes part most, a coordinate or a state of a load' : 'the coordinate with most of the kinetic energy';
     return this.swept ? `Branches are followed by shape: a name is of ${most}, at the beginning and, where it becomes another, at the end. Triangles mark motions that grow. Click a mark for its shape.`
       : `A mode is named after ${most}. Click a row for its shape.${this.rigid()}`;
   }
@@ -203,22 +203,21 @@ export class Modes {
     return [b.name, this.swept ? `${this.data.label} ${number_among(this.data.values)(m.value)}` : '', natural(m) || !m.growth ? `${in_hertz(natural(m))} Hz, ${in_radians(2 * Math.PI * natural(m))} rad/s` : '', m.hertz === 0 && m.growth ? `growth ${number(m.growth)}/s` : '', m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
   }
 
-  // What kinetic energy each coordinate of the shape would have without the others, and how like the first shape of the
-  // branch it is.
+  // What share of the kinetic energy each coordinate of the shape has, and how like the first shape of the branch it is.
   choose(b, m) {
     this.chosen = [b, m];
     this.card.replaceChildren(element('h2', 'Mode'));
     for (const text of this.about(b, m)) this.card.append(element('div', text));
     if (!m.shape) return;
     if (this.swept) this.card.append(element('div', `like the branch's first shape (MAC): ${m.mac.toFixed(3)}`, { class: 'soft' }));
-    this.card.append(element('p', 'Shares by the kinetic energy that each coordinate would have alone, and phases', { class: 'soft' }));
+    this.card.append(element('p', 'Shares of the kinetic energy, and phases; less than nothing has what moves against the momentum that the rest gives it', { class: 'soft' }));
     const bars = element('table', null, { class: 'bars' });
     for (const [name, share, phase] of m.shape) {
       const row = element('tr'), cell = element('td'), bar = element('div', null, { class: 'level' });
-      bar.style.width = `${Math.max(1, 100 * share)}%`;
+      bar.style.width = `${Math.min(100, Math.max(1, 100 * Math.abs(share)))}%`;
       bar.style.background = b.color ?? 'currentColor';
       cell.append(bar);
-      row.append(element('th', name), cell, element('td', `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`, { class: 'number' }), element('td', `${Math.round(phase)}°`, { class: 'number' }));
+      row.append(element('th', name), cell, element('td', `${(100 * share).toFixed(Math.abs(share) < 0.1 ? 1 : 0)} %`, { class: 'number' }), element('td', `${Math.round(phase)}°`, { class: 'number' }));
       bars.append(row);
     }
     this.card.append(bars);
