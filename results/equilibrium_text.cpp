@@ -131,6 +131,12 @@ std::string equilibrium_text(const study::Configuration& c, const study::Equilib
     text += '\n' + words + '\n';
   if (const std::string words = study::stability_text(found.stability); !words.empty()) text += '\n' + words + '\n';
   if (!found.bent.empty()) text += '\n' + found.bent + '\n';
+  if (found.steady.strayed > 0)
+    text += fmt::format(
+        "\nA hinge is turned by {:.3g} rad from where it began, and following the forces led to no balance: there may "
+        "be "
+        "others, and nearer ones. --at begins elsewhere.\n",
+        found.steady.strayed);
   if (!found.changing.empty()) text += '\n' + found.changing + '\n';
   return text;
 }

@@ -165,6 +165,7 @@ Json steady_json(const Model& model, const SteadyState& steady, const Held& held
   j["converged"] = steady.converged;
   j["iterations"] = steady.iterations;
   j["relaxations"] = steady.relaxations;
+  j["strayed"] = steady.strayed;
   j["residual"] = left;
   j["efforts"] = std::move(efforts);
   if (model.layout().continuous > 0) {

@@ -231,6 +231,7 @@ SteadyState find_steady_state(const TangentDynamics& dynamics, const State& star
   if (found.converged) {
     const double angle = turned(dynamics.model(), start, found.state);
     if (angle < near || (angle < std::numbers::pi && lasts(dynamics, found.state, held))) return found;
+    found.strayed = angle;
   }
   const std::optional<Relaxation> relaxation = relaxed(dynamics, resting, held);
   if (!relaxation) return found;

@@ -22,8 +22,11 @@ Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& stat
 struct SteadyState {
   State state;  ///< the steady state, or the best found
   bool converged = false;
-  int iterations = 0;       ///< of Newton's method
-  int relaxations = 0;      ///< steps along the forces before these
+  int iterations = 0;   ///< of Newton's method
+  int relaxations = 0;  ///< steps along the forces before these
+  /// [rad] by which a hinge is turned from the start where the forces lead nowhere, and what Newton's method ends at by
+  /// itself stands: any balance of many. Else 0.
+  double strayed = 0;
   Eigen::VectorXd efforts;  ///< [N m, N] that held speeds need beside the loads; of the free ones what is left over
   Eigen::VectorXd rates;    ///< of the continuous states of loads: what is left over
   Eigen::VectorXd renewed;  ///< of what sampled loads hold: what a sample still changes; empty where none are looked at
