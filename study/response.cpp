@@ -54,12 +54,19 @@ LinearModel model_for(const Configuration& c, const ResponseQuestion& question, 
 /// Whether a root stands for s = 0: those are found by rank.
 bool at_zero(const LinearSystem& s, Complex root) { return root == (s.sampled() ? 1.0 : 0.0); }
 
-/// At half the rate of the samples, z = −1, where one of the zeros is: no rounding of it.
-void clear_half_rate(Response& r) {
+/// At so many frequencies a decade and about the roots [rad/s].
+std::vector<ResponseAt> values_between(const TransferFunction& G, const Response& r, std::pair<double, double> ends,
+                                       int per_decade) {
+  Eigen::VectorXcd marks(r.roots.poles.size() + r.roots.zeros.size());
+  marks << r.roots.poles, r.roots.zeros;
+  std::vector<ResponseAt> values = frequency_response(G, ends.first, ends.second, per_decade, marks);
+  // At half the rate of the samples, z = −1, where one of the zeros is: no rounding of it.
   const LinearSystem& s = r.model.system;
-  if (!s.sampled() || r.values.empty() || r.values.back().omega < pi / s.period) return;
   const auto at_half_rate = [](Complex root) { return std::abs(root + 1.0) <= 1e-7 * pi; };
-  if (std::any_of(r.roots.zeros.begin(), r.roots.zeros.end(), at_half_rate)) r.values.back().value = 0;
+  if (s.sampled() && !values.empty() && values.back().omega >= pi / s.period &&
+      std::any_of(r.roots.zeros.begin(), r.roots.zeros.end(), at_half_rate))
+    values.back().value = 0;
+  return values;
 }
 
 /// G(0), or the limit of s^integrators G, as ∏ (s − zero) / ∏ (s − pole) has it.
@@ -105,9 +112,9 @@ void find_participation(double gain, Response& r) {
   for (double& share : r.participation) share = sum > 0 ? share / sum : 0.0;
 }
 
-/// A decade around the poles [rad/s] or, where all of these are at zero, the zeros; of a loop that is opened the zeros
-/// count as well, and it is looked at until its gain is one.
-std::pair<double, double> decades(const TransferFunction& G, const Response& r) {
+/// A decade around the poles [rad/s] or, where all of these are at zero, the zeros; of a loop the zeros count as well,
+/// and it is looked at until its gain is one.
+std::pair<double, double> decades(const TransferFunction& G, const Response& r, bool loop) {
   const LinearSystem& s = r.model.system;
   const double half_rate = s.sampled() ? pi / s.period : std::numeric_limits<double>::infinity();
   double low = std::numeric_limits<double>::infinity(), high = 0;
@@ -123,22 +130,22 @@ std::pair<double, double> decades(const TransferFunction& G, const Response& r) 
   meet(r.roots.poles, 0);
   const double fastest = high;
   // Zeros far below the poles are rounding of zero; far beyond them, of nothing in the leading coefficient.
-  if (r.opened || !(high > 0)) meet(r.roots.zeros, high > 0 ? 1e-4 * low : 0);
+  if (loop || !(high > 0)) meet(r.roots.zeros, high > 0 ? 1e-4 * low : 0);
   if (fastest > 0) high = fastest;
   if (!(high > 0)) low = high = std::min(2 * pi, half_rate);
-  high = s.sampled() && r.opened ? half_rate : std::min(10 * high, half_rate);
+  high = s.sampled() && loop ? half_rate : std::min(10 * high, half_rate);
   low = std::min(low / 10, high / 10);
   const auto gain = [&](double omega) { return std::abs(G.at_frequency(omega)); };
   constexpr int farthest = 6;  // decades
-  const bool falls = r.opened && !s.sampled() && std::abs(s.D(0, 0)) < 1;
+  const bool falls = loop && !s.sampled() && std::abs(s.D(0, 0)) < 1;
   for (int k = 0; falls && k < farthest && gain(high) > 1; ++k) high *= 10;
-  for (int k = 0; r.opened && k < farthest && r.integrators > 0 && gain(low) < 1; ++k) low /= 10;
+  for (int k = 0; loop && k < farthest && r.integrators > 0 && gain(low) < 1; ++k) low /= 10;
   return {low, high};
 }
 
 /// The ends of the frequencies [rad/s].
 std::pair<double, double> ends(const ResponseQuestion& question, const TransferFunction& G, const Response& r) {
-  auto [low, high] = decades(G, r);
+  auto [low, high] = decades(G, r, r.opened);
   const double half_rate = r.model.system.sampled() ? pi / r.model.system.period : high;
   if (question.from) low = 2 * pi * *question.from;
   if (question.to) high = 2 * pi * *question.to;
@@ -151,9 +158,14 @@ std::pair<double, double> ends(const ResponseQuestion& question, const TransferF
   return {low, high};
 }
 
-void find_margins(const TransferFunction& G, Response& r) {
+/// Of the loop at all frequencies, whichever are shown.
+void find_margins(const TransferFunction& G, const ResponseQuestion& question, Response& r) {
+  const int enough = ResponseQuestion{}.per_decade;
+  const bool shown = r.opened && !question.from && !question.to && question.per_decade >= enough;
+  const std::vector<ResponseAt> whole =
+      shown ? r.values : values_between(G, r, decades(G, r, true), std::max(enough, question.per_decade));
   try {
-    r.margins = margins(G, r.values, r.roots.hidden, r.integrators > 0 ? std::optional<double>() : r.static_gain);
+    r.margins = margins(G, whole, r.roots.hidden, r.integrators > 0 ? std::optional<double>() : r.static_gain);
   } catch (const std::domain_error&) {  // the closed loop is not well posed
     r.margins.reset();
   }
@@ -189,14 +201,10 @@ Response response(const Configuration& c, const ResponseQuestion& question) {
   const TransferFunction G(s);
   find_static_gain(G, found.gain, r);
   find_participation(found.gain, r);
-  const auto [low, high] = ends(question, G, r);
-  Eigen::VectorXcd marks(r.roots.poles.size() + r.roots.zeros.size());
-  marks << r.roots.poles, r.roots.zeros;
-  r.values = frequency_response(G, low, high, question.per_decade, marks);
-  clear_half_rate(r);
+  r.values = values_between(G, r, ends(question, G, r), question.per_decade);
   r.peaks = peaks(G, r.values, r.roots.poles);
   // Of equations that change, one instant tells no stability: there is nothing to be far from.
-  if (!r.model.frozen) find_margins(G, r);
+  if (!r.model.frozen) find_margins(G, question, r);
   if (!question.reduce) return r;
   r.reduction = balanced_truncation(s, *question.reduce);
   const TransferFunction smaller(r.reduction->system);

@@ -77,6 +77,22 @@ TEST(Loop, OfAChainOfIntegratorsHasItsMarginsWhateverEffortStands) {
   EXPECT_NEAR(r.margins->lag()->angle, pi + std::arg(L), 1e-8);
 }
 
+TEST(Loop, HasItsMarginsWhateverFrequenciesAreShown) {
+  for (const std::string clock : {"", ", sample: 0.01"}) {
+    const auto shown = [&](std::optional<double> from, std::optional<double> to, int points) {
+      return response(at_start(scene_of(chain(clock))), {"control", "", from, to, points, {}});
+    };
+    const Response whole = shown({}, {}, 100), part = shown(1e-3, 2e-3, 5);
+    ASSERT_TRUE(whole.margins && part.margins);
+    ASSERT_NE(whole.margins->lower(), nullptr);
+    ASSERT_NE(part.margins->lower(), nullptr) << clock;
+    EXPECT_NEAR(part.margins->lower()->factor, whole.margins->lower()->factor, 1e-9);
+    ASSERT_EQ(part.margins->phases.size(), whole.margins->phases.size());
+    EXPECT_NEAR(part.margins->lag()->angle, whole.margins->lag()->angle, 1e-9);
+    EXPECT_LT(part.values.back().omega, 2 * pi * 2.1e-3) << "what is shown is what was asked for";
+  }
+}
+
 TEST(Loop, OfASampledChainOfIntegratorsWithADelayHasItsMargins) {
   constexpr double T = 0.002;
   const Response r =
