@@ -104,6 +104,7 @@ Json response_json(const study::Configuration& c, const study::Response& r) {
   j["output_unit"] = r.model.outputs[0].unit;
   if (!c.closing().empty()) j["closing"] = c.closing();
   j["opened"] = r.opened;
+  j["follows"] = r.follows;
   j["period"] = s.period;
   j["equilibrium"] = r.model.equilibrium;
   j["frozen"] = r.model.frozen;

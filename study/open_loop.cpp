@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/plugin/load_numbers.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/linear_parts.hpp"
 #include "withy/study/turning_ends.hpp"
@@ -15,21 +19,24 @@
 namespace withy::study {
 namespace {
 
-/// Derivatives of a load's efforts with respect to the small motions: speeds × size.
+/// Derivatives of what a load answers with, its efforts on all speeds or its command, by the small motions: a column
+/// each.
 struct FedBack {
   Eigen::MatrixXd slopes;
-  Eigen::RowVectorXd errors;  ///< what differences may be off by, of the greatest effort
+  Eigen::RowVectorXd errors;  ///< what differences may be off by, of the greatest answer
 };
-FedBack fed_back(const SmallMotions& motions, std::size_t load) {
-  FedBack all{Eigen::MatrixXd(motions.by_effort().cols(), motions.size()), Eigen::RowVectorXd::Zero(motions.size())};
-  const double effort = motions.efforts(motions.state(), load).cwiseAbs().maxCoeff();
+template <class Answers>
+FedBack fed_back(const SmallMotions& motions, Answers&& answers) {
+  const Eigen::VectorXd here = answers(motions.state());
+  FedBack all{Eigen::MatrixXd(here.size(), motions.size()), Eigen::RowVectorXd::Zero(motions.size())};
+  const double greatest = here.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < all.slopes.cols(); ++i) {
     const double step = motions.step(i);
     const Differenced d =
-        adaptive_difference([&](double h) { return motions.efforts(motions.displaced(i, h), load); }, step);
+        adaptive_difference([&](double h) -> Eigen::VectorXd { return answers(motions.displaced(i, h)); }, step);
     all.slopes.col(i) = d.slope;
-    // A constant effort that is far above what a displacement changes takes digits from it.
-    all.errors[i] = d.change.maxCoeff() + 8 * std::numeric_limits<double>::epsilon() * effort / step;
+    // A constant answer that is far above what a displacement changes takes digits from it.
+    all.errors[i] = d.change.maxCoeff() + 8 * std::numeric_limits<double>::epsilon() * greatest / step;
   }
   return all;
 }
@@ -52,9 +59,8 @@ std::pair<std::size_t, std::string> load_and_hinge(const Model& model, const std
 
 OptionError nothing_fed_back(const std::string& name) {
   return {"input", "load '" + name +
-                       "' feeds nothing back at this state: it is at a limit, or acts through other loads, of which "
-                       "one that gives an effort, or a sampled one whose command continuous loads follow, can be "
-                       "opened"};
+                       "' feeds nothing back at this state: it is at a limit, or no load that acts continuously "
+                       "follows its command; one that gives an effort, or whose command others follow, can be opened"};
 }
 
 /// What a load answers with: efforts in one proportion, along · (row · states).
@@ -129,6 +135,25 @@ Command command_of(SampledLoads& sampled, std::size_t load, const std::string& n
   return {{sampled.efforts().middleCols(first, count) * one, row, ""}, moved * one};
 }
 
+/// What a load gives to others.
+class CommandSensor final : public BoundSensor {
+ public:
+  explicit CommandSensor(std::size_t load) : load_(load) {}
+  std::vector<SensorColumn> columns() const override { return {{"", "1"}}; }
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
+    auto* const loads = dynamic_cast<SensedLoads*>(&state);
+    values[0] = loads == nullptr ? std::numeric_limits<double>::quiet_NaN() : loads->given(load_, 0, state.y());
+  }
+
+ private:
+  std::size_t load_;
+};
+
+std::string unit_of_command(const LoadNode& node) {
+  const auto* told = dynamic_cast<const LoadNumbers*>(node.load.get());
+  return told == nullptr || told->numbers().empty() ? "" : told->numbers().front().unit;
+}
+
 /// \throws InputError where other loads are sampled at instants that are none of the load's
 void require_its_period_is_common(const SampledLoads& sampled, std::size_t load, const std::string& name) {
   const double period = sampled.period_of(load);
@@ -165,6 +190,60 @@ Eigen::MatrixXd difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, c
 
 }  // namespace
 
+namespace {
+
+/// The loop of a continuous load that acts through others alone, opened at its command.
+LinearModel open_at_command(const Configuration& c, const std::string& name, std::size_t load) {
+  const LoadNode& node = c.prepared().model().loads()[load];
+  if (node.load->output()->outputs() > 1)
+    throw OptionError("input", "load '" + name + "' gives several commands, through which it acts on several loads");
+  SmallMotions motions(c, {{"command", std::make_shared<CommandSensor>(load)}}, load);
+  SampledLoads sampled(motions);
+  const FedBack answer = fed_back(motions, [&](const State& state) { return motions.sensed(state); });
+  const double command = motions.sensed(motions.state())[0];
+  const Differenced push = adaptive_difference([&](double h) { return motions.moved(motions.commanded(h)); },
+                                               std::max(1.0, std::abs(command)));
+  if (answer.slopes.isZero(0) || push.slope.isZero(0)) throw nothing_fed_back(name);
+  LinearModel linear = about(c, motions, sampled).linear;
+  const std::string unit = unit_of_command(node);
+  linear.inputs = {{name, unit}};
+  linear.outputs = {{"-" + name, unit}};
+  linear.output_values = {-command};
+  linear.output_derivatives = "by central differences of eighth order";
+  linear.system.A = difference(motions.A(), push.slope * answer.slopes,
+                               push.slope.cwiseAbs() * answer.errors + push.change * answer.slopes.cwiseAbs());
+  linear.system.B = push.slope;
+  linear.system.C = -answer.slopes;
+  linear.system.D.setZero(1, 1);
+  return linear;
+}
+
+}  // namespace
+
+std::vector<std::string> commands_followed(const Configuration& c, const std::string& name) {
+  std::vector<std::string> followed;
+  const Model& model = c.prepared().model();
+  const std::size_t load = load_and_hinge(model, name).first;
+  const LoadSlot& own = model.loads()[load].continuous_slot;
+  for (std::size_t l = 0; l < model.loads().size(); ++l) {
+    const BoundLoad& other = *model.loads()[l].load;
+    if (l == load || other.output() == nullptr || (other.discrete() != nullptr && other.discrete()->period() > 0))
+      continue;
+    const SmallMotions motions(c, {}, l);
+    const auto first = static_cast<Eigen::Index>(own.first - model.layout().positions - model.layout().speeds +
+                                                 2 * motions.free().size());
+    const auto answer = [&](double h) {
+      const State state = motions.commanded(h);
+      const Eigen::VectorXd efforts = motions.efforts(state, load);
+      Eigen::VectorXd all(efforts.size() + static_cast<Eigen::Index>(own.count));
+      all << efforts, motions.moved(state).segment(own.count > 0 ? first : 0, static_cast<Eigen::Index>(own.count));
+      return all;
+    };
+    if (!adaptive_difference(answer, 1).slope.isZero(0)) followed.push_back(model.loads()[l].name);
+  }
+  return followed;
+}
+
 bool feeds_back(const Model& model, const std::string& name) {
   const auto [load, hinge] = load_and_hinge(model, name);
   return load < model.loads().size() && model.loads()[load].load->input() == nullptr;
@@ -187,7 +266,10 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
     answer = std::move(command.answer);
     push = std::move(command.push);
   } else {
-    all = is_sampled ? FedBack{sampled.own_efforts().middleCols(first, count), {}} : fed_back(motions, load);
+    all = is_sampled ? FedBack{sampled.own_efforts().middleCols(first, count), {}}
+                     : fed_back(motions, [&](const State& state) { return motions.efforts(state, load); });
+    if (!is_sampled && hinge.empty() && all.slopes.isZero(0) && model.loads()[load].load->output() != nullptr)
+      return open_at_command(c, name, load);
     answer = answer_of(c, all.slopes, name, hinge);
     push = motions.by_effort() * answer.along;
   }

@@ -186,6 +186,7 @@ Response response(const Configuration& c, const ResponseQuestion& question) {
   check(question);
   Response r;
   r.model = model_for(c, question, r.opened);
+  if (r.opened && !r.model.system.sampled()) r.follows = commands_followed(c, question.input);
   const LinearSystem& s = r.model.system;
   const ZerosAndGain found = zeros(s);
   if (found.gain == 0)

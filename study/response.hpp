@@ -29,8 +29,10 @@ class Unfelt : public std::domain_error {
 };
 
 struct Response {
-  LinearModel model;       ///< of one input and one output
-  bool opened = false;     ///< the loop of a load; else the scene as it is
+  LinearModel model;    ///< of one input and one output
+  bool opened = false;  ///< the loop of a load; else the scene as it is
+  /// Of an opened loop, as commands_followed.
+  std::vector<std::string> follows = {};
   Eigen::VectorXcd every;  ///< all poles: of sampled systems multipliers e^{sT}
   SeenRoots roots;         ///< what the input moves and the output sees
   /// Poles at s = 0 that the output sees: the static response is then like gain/s^integrators.

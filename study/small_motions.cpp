@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/model/compiled_model.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/study/displaced_command.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/load_efforts.hpp"
 
@@ -24,7 +27,7 @@ class HeldStill final : public Motion {
   double end() const override { return 0; }
 };
 
-/// An effort on every speed, its discrete states.
+/// An effort on every speed, its discrete states, and one that others look at.
 class BoundPush final : public BoundLoad, public DiscretePart {
  public:
   explicit BoundPush(std::size_t speeds) : speeds_(speeds) {}
@@ -35,7 +38,7 @@ class BoundPush final : public BoundLoad, public DiscretePart {
   const DiscretePart* discrete() const override { return this; }
   double end() const override { return 0; }
   void begin(State& /*state*/) const override {}
-  std::size_t states() const override { return speeds_; }
+  std::size_t states() const override { return speeds_ + 1; }
   void renew(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
              const withy::Crossing& /*crossing*/, std::span<double> /*discrete*/,
              std::span<double> /*scratch*/) const noexcept override {}
@@ -56,18 +59,21 @@ class Push final : public Load {
 
 }  // namespace
 
-SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> sensors)
+SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> sensors, std::optional<std::size_t> command)
     : dynamics_(c.dynamics()), work_(0), state_(c.state()), free_(free_speeds(c.held())) {
   auto model = std::make_shared<Model>(c.prepared().model());
   hold(c, *model, !sensors.empty());
   model->add_load("effort", Push());
+  // The discrete states that push are the last, before the work.
+  push_ = model->loads().back().slot.first;
+  if (command)
+    model->replace_load(
+        *command, std::make_shared<DisplacedCommand>(model->loads()[*command].load, push_ + model->layout().speeds));
   model_ = model;
   equations_ = compile_model(*c.prepared().scene.formulation, model_);
   reader_ = std::make_unique<SensorReader>(std::move(sensors), *equations_);
   work_ = equations_->make_work();
-  // The discrete states that push are the last, before the work.
-  push_ = model_->loads().back().slot.first;
-  state_.y.insert(state_.y.begin() + static_cast<std::ptrdiff_t>(push_), model_->layout().speeds, 0.0);
+  state_.y.insert(state_.y.begin() + static_cast<std::ptrdiff_t>(push_), model_->layout().speeds + 1, 0.0);
   if (c.sampled()) {
     // What loads tell may be of a sample at another state, from which this one was found.
     Renewal renewal(*model_, *equations_);
@@ -163,6 +169,26 @@ State SmallMotions::pushed(const Eigen::VectorXd& efforts) const {
   State state = state_;
   std::copy_n(efforts.data(), efforts.size(), state.y.begin() + static_cast<std::ptrdiff_t>(push_));
   return state;
+}
+
+State SmallMotions::commanded(double more) const {
+  State state = state_;
+  state.y[push_ + model_->layout().speeds] = more;
+  return state;
+}
+
+Eigen::VectorXd SmallMotions::moved(const State& state) const {
+  const Layout& layout = model_->layout();
+  std::vector<double> y_dot(layout.size());
+  if (!equations_->derivatives(state.time, state.y, y_dot, work_).ok())
+    throw std::domain_error("the accelerations near this state are not finite");
+  Eigen::VectorXd z_dot = Eigen::VectorXd::Zero(size());
+  const auto m = static_cast<Eigen::Index>(free_.size());
+  for (Eigen::Index i = 0; i < m; ++i)
+    z_dot[m + i] = y_dot[layout.positions + static_cast<std::size_t>(free_[static_cast<std::size_t>(i)])];
+  z_dot.tail(size() - 2 * m) = Eigen::Map<const Eigen::VectorXd>(y_dot.data() + layout.positions + layout.speeds,
+                                                                 static_cast<Eigen::Index>(layout.continuous));
+  return z_dot;
 }
 
 Eigen::VectorXd SmallMotions::efforts(const State& state, std::size_t load) const {

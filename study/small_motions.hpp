@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,11 @@ namespace withy::study {
 /// those of what is free.
 class SmallMotions {
  public:
+  /// \param command load (index in Model::loads()) whose command can be displaced; none: of no load
   /// \throws InputError where one rate of several of a hinge is held and `sensors` are to be read; std::domain_error
   /// where the mass matrix of what is free is singular.
-  SmallMotions(const Configuration& configuration, std::vector<SensorNode> sensors);
+  SmallMotions(const Configuration& configuration, std::vector<SensorNode> sensors,
+               std::optional<std::size_t> command = {});
 
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] const EquationsOfMotion& equations() const { return *equations_; }
@@ -49,6 +52,11 @@ class SmallMotions {
   [[nodiscard]] double step(const Eigen::VectorXd& efforts) const;
   /// The state with efforts [N m, N] on all speeds.
   [[nodiscard]] State pushed(const Eigen::VectorXd& efforts) const;
+  /// The state in which loads that measure the command measure so much more.
+  [[nodiscard]] State commanded(double more) const;
+  /// ż but for the displacements, whose rates are the speeds: of a state with held rates that are none of held_alone.
+  /// \throws std::domain_error where it is not finite
+  [[nodiscard]] Eigen::VectorXd moved(const State& state) const;
   /// Efforts [N m, N] of a load (index in Model::loads()) on all speeds.
   [[nodiscard]] Eigen::VectorXd efforts(const State& state, std::size_t load) const;
   /// Those of all loads together.
@@ -69,7 +77,7 @@ class SmallMotions {
   const TangentDynamics& dynamics_;
   mutable Work work_;
   State state_;
-  std::size_t push_ = 0;  ///< first of the discrete states that push
+  std::size_t push_ = 0;  ///< first of the discrete states that push; the last of them displaces the command
   std::vector<Eigen::Index> free_, held_alone_;
   std::vector<std::string> names_;
   std::vector<double> steps_;

@@ -269,6 +269,13 @@ void Model::require_rods(const Terms& scene) const {
   }
 }
 
+void Model::replace_load(std::size_t index, std::shared_ptr<const BoundLoad> load) {
+  LoadNode& node = loads_[index];
+  node.continuous = load->continuous();
+  load_scratch_ = std::max(load_scratch_, load->scratch());
+  node.load = std::move(load);
+}
+
 std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> model, const Terms& scene) {
   // Before loads are bound anew, which look for the rods.
   model->require_rods(scene);
@@ -296,9 +303,7 @@ std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> m
         model->loads_[l].load->rebound(changed == nullptr ? *model : *changed, scene);
     if (load == nullptr) continue;
     if (changed == nullptr) changed = std::make_shared<Model>(*model);
-    changed->load_scratch_ = std::max(changed->load_scratch_, load->scratch());
-    changed->loads_[l].load = std::move(load);
-    changed->loads_[l].continuous = changed->loads_[l].load->continuous();
+    changed->replace_load(l, std::move(load));
   }
   if (changed == nullptr) return model;
   return changed;

@@ -160,6 +160,9 @@ class Model {
   /// Adds a load, bound to this model. For builders of a model, before it is shared and before it has states.
   /// \throws std::invalid_argument as Load::bind; where its clock has no finite period, or its counts are beyond 2³².
   void add_load(std::string name, const Load& load);
+  /// Puts another load, with the same states, in the place of one that is bound already. For builders of a model,
+  /// before it is compiled: loads that measure the one hear of it as they are bound to the compiled model.
+  void replace_load(std::size_t index, std::shared_ptr<const BoundLoad> load);
   /// Sensors that loads may measure, by their names; those without a sensor exist and cannot be measured.
   [[nodiscard]] const std::vector<SensorNode>* measured() const { return measured_.get(); }
   /// For builders of a model, before loads are added.
