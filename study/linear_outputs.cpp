@@ -42,7 +42,9 @@ void add_hinges(const Configuration& c, std::vector<Offered>& outputs) {
       const std::string& name = layout.speed_names[slot.speed + i];
       const auto speed = static_cast<Eigen::Index>(slot.speed + i);
       // Where coordinates are a quaternion the output is the rotation from it, zero here.
-      const double value = slot.positions == slot.speeds ? c.state().y[slot.position + i] : 0.0;
+      const std::optional<std::size_t> coordinate =
+          slot.positions == slot.speeds ? std::optional(i) : kinds[i].coordinate;
+      const double value = coordinate ? c.state().y[slot.position + *coordinate] : 0.0;
       outputs.push_back({{{name, kinds[i].angular ? "rad" : "m"}, -1, value, Eigen::RowVectorXd::Unit(2 * n, speed)}});
       rates.push_back({{{name + ".rate", kinds[i].angular ? "rad/s" : "m/s"},
                         -1,

@@ -189,14 +189,14 @@ Response response(const Configuration& c, const ResponseQuestion& question) {
   if (r.opened && !r.model.system.sampled()) r.follows = commands_followed(c, question.input);
   const LinearSystem& s = r.model.system;
   const ZerosAndGain found = zeros(s);
-  if (found.gain == 0)
+  const KnownRoots every = known_poles(s);
+  if (found.gain == 0 || !is_felt(s, every.values))
     throw Unfelt(
         r.opened ? fmt::format("the loop of '{0}' is open at this state: what it measures does not feel its effort, or "
                                "'{0}' or a load before it is at a limit",
                                r.model.inputs[0].name)
                  : fmt::format("the output {} does not feel the input {} at this state", r.model.outputs[0].name,
                                r.model.inputs[0].name));
-  const KnownRoots every = known_poles(s);
   r.every = every.values;
   r.roots = seen_roots(s, every, found.zeros);
   const TransferFunction G(s);

@@ -8,6 +8,9 @@
 #include <numeric>
 #include <stdexcept>
 #include <utility>
+#include <vector>
+
+#include "withy/core/analysis/balance_with_ends.hpp"
 
 namespace withy {
 namespace {
@@ -187,6 +190,38 @@ std::vector<ResponseAt> frequency_response(const TransferFunction& G, double low
     if (const Complex value = G.at_frequency(omega); finite(value)) response.push_back({omega, value});
   }
   return response;
+}
+
+bool is_felt(const LinearSystem& system, const Eigen::VectorXcd& poles) {
+  constexpr double rounding = 1e-12;
+  constexpr double beside = 1.03;  // of a pole, where nothing is finite
+  constexpr std::size_t most = 16;
+  LinearSystem wide = system;
+  balance_with_ends(wide);
+  const Eigen::Index n = wide.A.rows();
+  if (n == 0) return wide.D(0, 0) != 0;
+  const double half_rate = system.sampled() ? pi / system.period : std::numeric_limits<double>::infinity();
+  std::vector<double> at;
+  for (const Complex pole : poles)
+    if (const double size = beside * std::abs(exponent_of(system, pole)); size > 0 && size < half_rate)
+      at.push_back(size);
+  if (at.empty()) at.push_back(std::min(1.0, half_rate / 2));
+  std::sort(at.begin(), at.end());
+
+  wide.B.conservativeResize(n, 2), wide.C.conservativeResize(2, n);
+  wide.B.col(1) = Eigen::VectorXd::NullaryExpr(n, [](Eigen::Index i) { return std::cos(1 + 2.4 * double(i)); });
+  wide.C.row(1) = wide.B.col(1).transpose();
+  const double direct = wide.D(0, 0);
+  wide.D = Eigen::MatrixXd::Zero(2, 2);
+  wide.D(0, 0) = direct;
+  const TransferFunction G(wide);
+  const std::size_t every = (at.size() + most - 1) / most;
+  for (std::size_t i = 0; i < at.size(); i += every) {
+    const Eigen::MatrixXcd g = G(G.system().at_frequency(at[i]));
+    // Where that is not finite nothing is known.
+    if (!(std::abs(g(0, 0) * g(1, 1)) <= rounding * std::abs(g(0, 1) * g(1, 0)))) return true;
+  }
+  return false;
 }
 
 std::vector<Peak> peaks(const TransferFunction& G, const std::vector<ResponseAt>& response,

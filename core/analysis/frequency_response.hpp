@@ -23,6 +23,12 @@ struct ResponseAt {
 std::vector<ResponseAt> frequency_response(const TransferFunction& G, double low, double high, int per_decade,
                                            const Eigen::VectorXcd& marks);
 
+/// Whether the input reaches the output by more than rounding: whether near some pole |g₁₁ g₂₂| is more than 1e-12 of
+/// |g₁₂ g₂₁|, g₁₁ being G and 2 a direction in which all states have a part. Whatever the units of input, output and
+/// states are, two ends that symmetry keeps apart have less.
+/// \param poles of the system; of a sampled one multipliers
+bool is_felt(const LinearSystem& system, const Eigen::VectorXcd& poles);
+
 /// Poles and zeros that are the same: motions that the input does not move or the output does not see.
 struct SeenRoots {
   Eigen::VectorXcd poles, zeros;  ///< without them

@@ -352,5 +352,14 @@ TEST(LinearModel, TellsHowWellTheDerivativesOfTheOutputsAskedForAreKnown) {
   EXPECT_LT(to({"place"}), 1e-10);
 }
 
+TEST(LinearModel, TellsWhereAFreeBodyIs) {
+  const Prepared prepared = scene_of(free_body + "initial: {hinges: {float: {position: {position: [3, -2, 0.5]}}}}\n");
+  const LinearModel m = linear_model(at_start(prepared), {{"push"}, {"float"}});
+  std::vector<double> place;
+  for (std::size_t i = 0; i < m.outputs.size(); ++i)
+    if (m.outputs[i].unit == "m") place.push_back(m.output_values[i]);
+  EXPECT_EQ(place, (std::vector<double>{3, -2, 0.5}));
+}
+
 }  // namespace
 }  // namespace withy::study

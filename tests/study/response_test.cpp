@@ -124,6 +124,33 @@ TEST(Response, OfAHingedBeamIsTheClosedForm) {
   }
 }
 
+/// A push through the middle of a craft with two equal booms turns it by rounding alone, which has poles and zeros too.
+TEST(Response, OfWhatSymmetryKeepsApartIsNone) {
+  const Prepared prepared = scene_of(R"(
+bodies:
+  hub: {type: rigid, mass: 4, inertia: [3, 3, 5, 0, 0, 0], frames: {right: {position: [0.5, 0, 0]},
+    left: {position: [-0.5, 0, 0], orientation: {axis: [0, 0, 1], angle: "180 deg"}}, off: {position: [1.0e-6, 0, 0]}}}
+  right: {type: beam, length: 2, mass_per_length: 0.3, bending_y: {stiffness: 5, modes: 3}, damping_ratio: 0.01}
+  left: {type: beam, length: 2, mass_per_length: 0.3, bending_y: {stiffness: 5, modes: 3}, damping_ratio: 0.01}
+hinges:
+  float: {type: free, parent: world, child: hub}
+  one: {type: weld, parent: hub.right, child: right}
+  two: {type: weld, parent: hub.left, child: left}
+loads:
+  push: {type: input, frame: hub, direction: [0, 1, 0]}
+  aside: {type: input, frame: hub.off, direction: [0, 1, 0]}
+outputs: {rate: {type: gyro, of: hub}, place: {type: frame, of: hub, show: position}}
+)");
+  const auto ask = [&](const std::string& input, const std::string& output) {
+    return response(at_start(prepared), {input, output, {}, {}, 20, {}});
+  };
+  EXPECT_THROW(ask("push", "rate.z"), Unfelt);
+  EXPECT_EQ(ask("push", "place.y").integrators, 2);
+  // L (s² J)⁻¹ s at low frequency: the moment of a micrometre, about the inertia of the whole.
+  const double inertia = 5 + 2 * 0.3 * (2.5 * 2.5 * 2.5 - 0.5 * 0.5 * 0.5) / 3;
+  EXPECT_NEAR(ask("aside", "rate.z").static_gain, 1e-6 / inertia, 1e-4 * 1e-6 / inertia);
+}
+
 TEST(Response, WhatCannotBeAskedIsSaid) {
   const Prepared prepared = scene_of(free_body);
   const auto ask = [&](const std::string& input, const std::string& output) {
