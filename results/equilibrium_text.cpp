@@ -10,6 +10,7 @@
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/text_table.hpp"
+#include "withy/study/at_limits.hpp"
 #include "withy/study/formulation_meaning.hpp"
 
 namespace withy {
@@ -102,6 +103,7 @@ Json equilibrium_json(const study::Configuration& c, const study::Equilibrium& f
   j["stays_steady"] = found.stays;
   j["stability"] = stability_json(found.stability);
   j["bent"] = found.bent;
+  j["limited"] = found.limited;
   j["against_next"] = against_json(found.against);
   j["derivatives"] = found.derivatives;
   j["message"] = found.problem.empty() ? found.changing : found.problem;
@@ -131,6 +133,7 @@ std::string equilibrium_text(const study::Configuration& c, const study::Equilib
     text += '\n' + words + '\n';
   if (const std::string words = study::stability_text(found.stability); !words.empty()) text += '\n' + words + '\n';
   if (!found.bent.empty()) text += '\n' + found.bent + '\n';
+  if (!found.limited.empty()) text += '\n' + study::at_limits_text(found.limited) + '\n';
   if (found.steady.strayed > 0)
     text += fmt::format(
         "\nA hinge is turned by {:.3g} rad from where it began, and following the forces led to no balance: there may "

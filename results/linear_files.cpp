@@ -68,6 +68,7 @@ Json linear_model_json(const study::Configuration& c, const study::LinearModel& 
   j["shaking"] = linear.shaking;
   j["turning"] = turning_json(linear);
   j["changing"] = linear.changing;
+  j["limited"] = linear.limited;
   j["derivatives"] = linear.derivatives;
   j["output_derivatives"] = linear.output_derivatives;
   return j;

@@ -229,6 +229,7 @@ Json modes_json(const study::ModesOf& run) {
     if (at.period > 0) point["period"] = at.period, point["forgotten"] = at.forgotten;
     point["problem"] = at.problem;
     point["bent"] = at.bent;
+    point["limited"] = at.limited;
     point["modes"] = std::move(modes);
     points.push_back(std::move(point));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "withy/results/modes_text.hpp"
+#include "withy/study/at_limits.hpp"
 
 namespace withy {
 namespace {
@@ -25,6 +26,11 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
   if (bent != run.points.end())
     text +=
         '\n' + (sweep.none() ? "" : fmt::format("{} = {}: ", sweep.path, sweep.text(bent->value))) + bent->bent + '\n';
+  const auto limited =
+      std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return !at.limited.empty(); });
+  if (limited != run.points.end())
+    text += '\n' + (sweep.none() ? "" : fmt::format("{} = {}: ", sweep.path, sweep.text(limited->value))) +
+            study::at_limits_text(limited->limited) + '\n';
   // Of a sweep the first value at which the equations are periodic speaks for all.
   const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
   const study::ModesAt& spoken_of = frozen != run.points.end() ? *frozen : run.points.back();

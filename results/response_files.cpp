@@ -111,6 +111,7 @@ Json response_json(const study::Configuration& c, const study::Response& r) {
   j["shaking"] = r.model.shaking;
   j["turning"] = turning_json(r.model);
   j["changing"] = r.model.changing;
+  j["limited"] = r.model.limited;
   j["held"] = c.held_names();
   j["derivatives"] = r.model.derivatives;
   j["output_derivatives"] = r.model.output_derivatives;

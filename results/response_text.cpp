@@ -7,6 +7,7 @@
 
 #include "withy/results/response_files.hpp"
 #include "withy/results/text_table.hpp"
+#include "withy/study/at_limits.hpp"
 #include "withy/study/formulation_meaning.hpp"
 
 namespace withy {
@@ -155,8 +156,9 @@ std::string response_text(const study::Configuration& c, const study::Response& 
                                           : "; the state is no equilibrium: this is the neighbourhood of a motion "
                                             "(withy equilibrium --out FILE keeps one for --at)",
                       r.model.output_derivatives == "exact" ? "" : "; output " + r.model.output_derivatives);
-  for (const std::string& note : {study::note_of_frozen(r.model), study::note_of_moving(r.model),
-                                  study::note_of_changing(r.model, c.state().time)})
+  for (const std::string& note :
+       {study::note_of_frozen(r.model), study::note_of_moving(r.model),
+        study::note_of_changing(r.model, c.state().time), study::at_limits_text(r.model.limited)})
     if (!note.empty()) text += note + '\n';
   if (!r.follows.empty())
     text += fmt::format(

@@ -2,6 +2,7 @@
 
 #include "withy/core/analysis/sliding.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/study/at_limits.hpp"
 #include "withy/study/bent.hpp"
 #include "withy/study/sampled_steady.hpp"
 #include "withy/study/turning.hpp"
@@ -23,7 +24,7 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
     if (tip.flexible)
       found.deflections.emplace_back(tip.body + '.' + tip.station, deflection(*c.prepared().equations, state.y, tip));
   }
-  if (found.steady.converged) found.bent = bent_text(c, state);
+  if (found.steady.converged) found.bent = bent_text(c, state), found.limited = at_limits(c, state);
   found.against = deflections_against_next(c, found.steady, holding, registry);
   if (found.stays) {
     Configuration about = c;

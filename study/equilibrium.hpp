@@ -25,6 +25,7 @@ struct Equilibrium {
   std::string derivatives;             ///< how they were found
   std::vector<std::pair<std::string, std::array<double, 3>>> deflections;  ///< of flexible bodies' tips [m]
   std::string bent;                    ///< by how much and by what, where that is far; else empty
+  std::vector<std::string> limited;    ///< loads that are at their limits there
   std::optional<AgainstNext> against;  ///< of these, in the next model up
 };
 

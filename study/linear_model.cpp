@@ -7,6 +7,7 @@
 
 #include "withy/core/analysis/steady_state.hpp"
 #include "withy/core/analysis/turn.hpp"
+#include "withy/study/at_limits.hpp"
 #include "withy/study/linear_inputs.hpp"
 #include "withy/study/linear_outputs.hpp"
 #include "withy/study/linear_parts.hpp"
@@ -117,6 +118,7 @@ About about(const Configuration& c, const SmallMotions& motions, SampledLoads& s
   for (const Eigen::Index s : motions.free())
     linear.accelerations.emplace_back(c.layout().speed_names[static_cast<std::size_t>(s)], motions.accelerations()[s]);
   linear.changing = changing_loads(c);
+  linear.limited = at_limits(c, c.state());
   TurnCheck turn = check_turn(c.dynamics(), c.state(), c.held());
   meet_narrow_loads(c, c.state(), turn);
   const TimedLoads timed = timed_loads(c, c.state(), turn.turning, Shaken::all);

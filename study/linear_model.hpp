@@ -35,6 +35,7 @@ struct LinearModel {
   std::vector<std::string> timed_outputs;    ///< the same: time by itself changes what they show of small motions
   std::vector<std::string> moving_outputs;   ///< their values move, by hinges that go on or by time
   std::vector<std::string> changing;  ///< loads whose gain changes with time by itself: it is that at the state's time
+  std::vector<std::string> limited;   ///< loads that are at their limits there
   std::string derivatives;            ///< how A was found
   std::string output_derivatives;     ///< how C and D were
 };

@@ -9,6 +9,7 @@
 
 #include "withy/core/analysis/coupled_modes.hpp"
 #include "withy/core/analysis/still_equations.hpp"
+#include "withy/study/at_limits.hpp"
 #include "withy/study/bent.hpp"
 #include "withy/study/blade_tracker.hpp"
 #include "withy/study/input_error.hpp"
@@ -96,6 +97,7 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
       at.modes = natural_modes(tangents, c.held());
     }
     add_followers(c, state, at.modes);
+    at.limited = at_limits(c, state);
     at.masses = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.names.size()));
     at.masses.head(tangents.mass.rows()) = tangents.mass.diagonal().cwiseAbs();
     if (!as_is) {

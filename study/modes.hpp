@@ -55,6 +55,7 @@ struct ModesAt {
   Jump jump = Jump::none;             ///< of a sweep, from the steady state at the value before
   std::string closing;                ///< Configuration::closing, of the state that this one was looked for from
   std::string bent;                   ///< how far the steady state is bent and by what, where that is far; else empty
+  std::vector<std::string> limited;   ///< loads that are at their limits there
   std::optional<SteadyFound> steady;  ///< none where the state was taken as it is
   std::shared_ptr<const Model> model;
   std::optional<TurningModes> turn;  ///< none where there are no modes

@@ -5,6 +5,7 @@
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/linear_files.hpp"
+#include "withy/study/at_limits.hpp"
 
 namespace withy::app {
 namespace {
@@ -26,6 +27,7 @@ ExitStatus linearize(const LinearizeArguments& arguments) {
     // A state that does not stay is one instant of a motion anyhow.
     if (const std::string note = study::note_of_frozen(linear); linear.equilibrium && !note.empty()) complain(note);
     if (const std::string note = study::note_of_changing(linear, c.state().time); !note.empty()) complain(note);
+    if (const std::string note = study::at_limits_text(linear.limited); !note.empty()) complain(note);
   } catch (const std::domain_error& e) {
     complain(e.what());
     return ExitStatus::stopped;

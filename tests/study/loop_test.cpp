@@ -9,6 +9,10 @@
 #include <limits>
 #include <numbers>
 
+#include "withy/study/at_limits.hpp"
+#include "withy/study/equilibrium.hpp"
+#include "withy/study/linear_model.hpp"
+#include "withy/study/modes.hpp"
 #include "withy/study/response.hpp"
 #include "withy/tests/study/linear_scenes.hpp"
 
@@ -124,6 +128,22 @@ TEST(Loop, OfAControllerAtItsLimitIsSaidToBeOpen) {
   } catch (const std::exception& e) {
     EXPECT_NE(std::string(e.what()).find("it is at a limit"), std::string::npos) << e.what();
   }
+}
+
+TEST(SmallMotions, NameTheLoadsThatAreAtTheirLimits) {
+  for (const std::string clock : {"", ", sample: 0.01"}) {
+    const Prepared narrow = scene_of(chain(clock + ", limit: 400")), wide = scene_of(chain(clock + ", limit: 4.0e6"));
+    const Configuration at = at_start(narrow), within = at_start(wide);
+    const std::vector<std::string> control = {"control"}, none;
+    EXPECT_EQ(modes_at(at, true).limited, control) << clock;
+    EXPECT_EQ(modes_at(within, true).limited, none) << clock;
+    EXPECT_EQ(linear_model(at, {}).limited, control) << clock;
+    EXPECT_EQ(linear_model(within, {}).limited, none) << clock;
+    // It comes to rest where the controller asks for nothing.
+    EXPECT_EQ(find_equilibrium(at, {}, plugins()).limited, none) << clock;
+  }
+  EXPECT_EQ(at_limits_text({}), "");
+  EXPECT_NE(at_limits_text({"control"}).find("'control' is at its limit"), std::string::npos);
 }
 
 /// A wheel on a spring whose rate is fed back with the wrong sign of its angle, which the spring outweighs: stable, and
