@@ -14,8 +14,10 @@ namespace {
 constexpr int most_relaxations = 100;
 constexpr std::size_t most_free = 300;  ///< of which eigenvalues are found in each step
 constexpr double longest_turn = 0.3;    ///< [rad] of a step
-/// Where 1/step is this share of the greatest stiffness, the step is nearly Newton's.
+/// Where what a step leaves of the forces, by K, is this share of them, the step is nearly Newton's.
 constexpr double nearly_newton = 1e-3;
+/// The same of 1/step beside the greatest stiffness: less is not seen in sums of both.
+constexpr double least_seen = 1e-15;
 /// Eigenvalues of K below this share of the greatest are rounding.
 constexpr double rounding = 1e-9;
 
@@ -126,7 +128,9 @@ std::optional<Relaxation> relaxed(const TangentDynamics& dynamics, const State& 
     const Eigen::VectorXd step = -here.K.partialPivLu().solve(here.forces);
     if (!step.allFinite()) return {};
     const double turn = turn_of(here.in_own_units(step));
-    if (here.stable() && slowness->value() <= nearly_newton * here.greatest && turn < longest_turn) return found;
+    const bool newton =
+        added * step.norm() <= nearly_newton * here.forces.norm() || added <= least_seen * here.greatest;
+    if (here.stable() && newton && turn < longest_turn) return found;
     const double part = std::min(1.0, longest_turn / std::max(turn, longest_turn));
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.size()));
     moved(free) = part * here.in_own_units(step);

@@ -4,8 +4,11 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "withy/tests/cli/process.hpp"
 
@@ -33,12 +36,17 @@ std::optional<std::string> on_a_terminal(const Folder& folder, std::vector<std::
   for (const std::string& word : words) command += " '" + word + "'";
   const int held = ::open(terminal, O_RDWR | O_NOCTTY);  // what was written is there to be read after the end
   EXPECT_EQ(Process(folder, {"/bin/sh", "-c", command}).wait().status, 0);
-  std::string text(1 << 16, '\0');
-  ::fcntl(ours, F_SETFL, O_NONBLOCK);
-  const ssize_t read = ::read(ours, text.data(), text.size());
+  // The system hands on what was written in its own time, and in order.
+  constexpr std::string_view last = "and that is all";
+  EXPECT_EQ(::write(held, last.data(), last.size()), static_cast<ssize_t>(last.size()));
+  std::string text;
+  for (std::array<char, 4096> part; !text.ends_with(last);) {
+    const ssize_t read = ::read(ours, part.data(), part.size());
+    if (read <= 0) break;
+    text.append(part.data(), static_cast<std::size_t>(read));
+  }
   ::close(held);
   ::close(ours);
-  text.resize(read > 0 ? static_cast<std::size_t>(read) : 0);
   return text;
 }
 
