@@ -8,10 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "withy/campaign/cases.hpp"
@@ -147,24 +150,41 @@ std::string foreign_in(const std::filesystem::path& store) {
   return vacant ? "" : name_of_segments;
 }
 
-/// One process at a time makes a store, as long as this lives. The file stays: whoever waits for it has it open.
+/// One process at a time makes a store, from `take` on as long as this lives. The file stays: whoever waits for it has
+/// it open.
 class StoreLock {
  public:
   /// \throws std::system_error
   explicit StoreLock(const std::filesystem::path& path)
-      : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-    int locked = file_ < 0 ? -1 : ::flock(file_, LOCK_EX);
-    while (file_ >= 0 && locked != 0 && errno == EINTR) locked = ::flock(file_, LOCK_EX);
-    if (locked == 0) return;
-    const int error = errno;
-    if (file_ >= 0) ::close(file_);
-    throw std::system_error(error, std::generic_category(), path.string());
+      : path_(path), file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    if (file_ < 0) throw std::system_error(errno, std::generic_category(), path_.string());
   }
   ~StoreLock() { ::close(file_); }
   StoreLock(const StoreLock&) = delete;
   StoreLock& operator=(const StoreLock&) = delete;
 
+  /// Waits until the lock is free.
+  /// \param made whether another process has made the store: it is asked while this waits, for then nobody need
+  /// \returns false where it has
+  /// \throws std::system_error; FolderBusy where it takes longer than any making of a store
+  bool take(const std::function<bool()>& made) {
+    using namespace std::chrono_literals;
+    constexpr auto patience = 20s, pause = 10ms;
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+      if (errno != EWOULDBLOCK && errno != EINTR)
+        throw std::system_error(errno, std::generic_category(), path_.string());
+      if (made()) return false;
+      if (std::chrono::steady_clock::now() > end)
+        throw FolderBusy(path_.string() +
+                         " has been locked for 20 s by another process, which has not made the store: is it stopped?");
+      std::this_thread::sleep_for(pause);
+    }
+    return true;
+  }
+
  private:
+  std::filesystem::path path_;
   int file_;
 };
 
@@ -226,7 +246,8 @@ Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
 void Store::make(bool anew) const {
   make_folder(path_);
   // Shards may begin a store together: one makes it, and the others find it made.
-  const StoreLock lock(path_ / name_of_lock);
+  StoreLock lock(path_ / name_of_lock);
+  if (!lock.take([&] { return !anew && is_same(); })) return;
   try {
     if (!anew && goes_on()) return;
   } catch (const ResultsError&) {

@@ -1,8 +1,10 @@
 // Stores: what is damaged is made again and nothing else, and nothing of another plan is mixed in.
 #include "withy/campaign/store.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -204,6 +206,43 @@ TEST(Sweeps, ShardsMayBeginAStoreTogether) {
 }
 
 // Neighbours in different segments, more than are open at once, one case of them twice.
+/// A lock that is held as by a process that has been stopped. \returns its descriptor
+int locked(const std::filesystem::path& file) {
+  const int held = ::open(file.c_str(), O_RDWR | O_CREAT, 0666);
+  EXPECT_EQ(::flock(held, LOCK_EX), 0);
+  return held;
+}
+
+TEST(Sweeps, AStoreThatOthersHaveMadeNeedsNoLock) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  run(folder, plan, "made", {1, 1, 1, {}});
+  std::filesystem::create_directories(folder / "store/segments");
+  const int held = locked(folder / "store/store.lock");
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::filesystem::copy_file(folder / "made/store.json", folder / "store/part");
+    std::filesystem::rename(folder / "store/part", folder / "store/store.json");
+  });
+  EXPECT_EQ(run(folder, plan, "store", {1, 1, 1, {}}).ran, 12U);
+  other.join();
+  ::close(held);
+}
+
+TEST(Sweeps, ALockThatIsHeldForEverIsSaid) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  std::filesystem::create_directories(folder / "store");
+  const int held = locked(folder / "store/store.lock");
+  try {
+    run(folder, plan, "store", {1, 1, 1, {}});
+    ADD_FAILURE() << "no error";
+  } catch (const FolderBusy& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("store.lock has been locked for 20 s by another process"));
+  }
+  ::close(held);
+}
+
 TEST(Sweeps, CasesAreReadFromManySegmentsInAnyOrder) {
   const PlanFolder folder;
   const Plan plan =
