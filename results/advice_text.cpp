@@ -131,12 +131,14 @@ class Lines {
   std::string text_, last_;
 };
 
-/// Why the choice: how the others fared.
+/// Why the choice: how the others fared, those above it too.
 void add_reasons(Lines& lines, const AdviceReport& report) {
   const study::Advice& a = report.advice;
   const study::Point& choice = a.choice->point;
+  std::vector<study::Probe> probes = a.probes;
+  probes.insert(probes.end(), a.above.begin(), a.above.end());
   const auto add = [&](const std::string& what, const std::function<bool(const study::Point&)>& property) {
-    const study::Probe* p = best_of(a.probes, property);
+    const study::Probe* p = best_of(probes, property);
     if (p != nullptr) lines.add("why", what + ": " + fared(a, report.question.accuracy, *p));
   };
   if (!choice.bodies.empty())

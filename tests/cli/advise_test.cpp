@@ -7,6 +7,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 #include <string>
 #include <string_view>
 
@@ -123,6 +124,21 @@ TEST(Advise, WhatIsNextUpHoldsTheAccuracy) {
   const json j = json::parse(advise(folder, {"--json"}, {"advise", "scenes/spin-up.yaml"}).out);
   ASSERT_FALSE(j.at("next_up").empty());
   for (const json& up : j.at("next_up")) EXPECT_LE(use_with_own(up, j.at("reference")), 1);
+}
+
+// Why exact was not chosen, and that it is the next one up, were two runs with two costs.
+TEST(Advise, TellsOneCostOfAFormulation) {
+  const Folder folder;
+  const std::string out = advise(folder, {"--formulations", "quadratic,exact", "--integrators", "imex,dop853"},
+                                 {"advise", "scenes/two-link-slew.yaml", "--accuracy", "1%"})
+                              .out;
+  const auto number = [&](const std::string& pattern) {
+    std::smatch found;
+    EXPECT_TRUE(std::regex_search(out, found, std::regex(pattern))) << pattern << '\n' << out;
+    return found.size() < 2 ? 0.0 : std::stod(found[1]);
+  };
+  const double cost = number("\ncost +([0-9.]+) ms"), up = number("\nnext up +exact, [^\n]* ([0-9.]+) ms");
+  EXPECT_LE(number("exact: holds it at ([0-9.]+) times the cost") * cost, 1.1 * up) << "ratios have two digits";
 }
 
 TEST(Advise, BeginsWithWhatTheAccuracyIsOf) {
