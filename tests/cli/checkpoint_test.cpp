@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <chrono>
 #include <fstream>
-#include <thread>
 
 #include "withy/tests/cli/json_result.hpp"
 
@@ -37,9 +35,7 @@ Finished ended_by(int signal, const Folder& folder, const Arguments& arguments) 
     const auto size = std::filesystem::file_size(folder.path() / "out/results.csv", none);
     return !none && size > 20'000;
   };
-  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (!under_way() && std::chrono::steady_clock::now() < patience)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  comes_true(under_way);
   ::kill(process.id(), signal);
   return process.wait();
 }

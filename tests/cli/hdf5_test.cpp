@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
-#include <chrono>
 #include <filesystem>
-#include <thread>
 
 #include "withy/tests/cli/process.hpp"
 
@@ -49,8 +47,7 @@ TEST(Run, KilledItLeavesAnHdf5FileThatIsReadAndSaysThatItIsNotWhole) {
                                             "time.end=1e6", "--hdf5", "--checkpoint",         "0.05",
                                             "--out",        "out"};
   Process process(folder, command);
-  for (int i = 0; i < 600 && !std::filesystem::exists(folder.path() / "out/checkpoint.cbor"); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  comes_true([&] { return std::filesystem::exists(folder.path() / "out/checkpoint.cbor"); });
   ::kill(process.id(), SIGKILL);
   const Finished ended = process.wait();
   ASSERT_EQ(ended.status, -SIGKILL) << ended.err;

@@ -5,9 +5,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 namespace withy::test {
 namespace fs = std::filesystem;
@@ -60,6 +62,18 @@ Finished Process::wait() {
   if (out_ != "/dev/full") f.out = folder_.read(out_);
   f.err = folder_.read(".stderr");
   return f;
+}
+
+bool comes_true(const std::function<bool()>& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(3);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) {
+      ADD_FAILURE() << "what is waited for has not come true";
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
 }
 
 Finished withy(const Folder& folder, std::vector<std::string> arguments) {

@@ -5,6 +5,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ class Process {
   std::string out_;
   pid_t id_ = -1;
 };
+
+/// Waits until a condition holds; it is a failure of the test where it does not within minutes.
+/// \returns whether it does
+bool comes_true(const std::function<bool()>& condition);
 
 /// Runs `withy` with arguments to its end.
 Finished withy(const Folder& folder, std::vector<std::string> arguments);

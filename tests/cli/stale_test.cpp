@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "withy/scene/sha256.hpp"
 #include "withy/tests/cli/process.hpp"
@@ -52,16 +50,13 @@ class ImportedBoom {
   std::string soft_;
 };
 
-/// Waits until a file is there and has some bytes, a minute at most.
+/// Waits until a file is there and has some bytes.
 bool appears(const std::filesystem::path& file, std::uintmax_t bytes) {
-  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (std::chrono::steady_clock::now() < patience) {
+  return comes_true([&] {
     std::error_code none;
     const auto size = std::filesystem::file_size(file, none);
-    if (!none && size >= bytes) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
+    return !none && size >= bytes;
+  });
 }
 
 TEST(Stale, ATradeDoesNotReusePointsOfAnotherFile) {
@@ -190,7 +185,7 @@ TEST(Folders, AKilledStudyLeavesNoResultOfTheOneBefore) {
     const json record = json::parse(folder.read("out/result.json"), nullptr, false);
     return record.is_object() && record.value("process", 0) == again.id();
   };
-  while (!taken()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  comes_true(taken);
   ::kill(again.id(), SIGKILL);
   again.wait();
   for (const char* old : {"compare.json", "compare.svg", "quadratic/run.json", "ruthless/run.json"})

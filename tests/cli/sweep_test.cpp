@@ -189,7 +189,7 @@ TEST(SweepCommand, AnInterruptedSweepKeepsWhatItHasAndSaysHowToGoOn) {
     const Finished f = folder.sweep({"status", "store", "--json"});
     return f.status == 0 ? json::parse(f.out)["done"].get<int>() : 0;
   };
-  while (done() < 5) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  comes_true([&] { return done() >= 5; });
   const Finished second = folder.sweep({"run", "plan.yaml", "--out", "store"});
   EXPECT_EQ(second.status, 3) << "the store has a writer";
   EXPECT_THAT(second.err, HasSubstr("is being written by another process"));
