@@ -59,8 +59,10 @@ void require_no_switches(const std::string& file, const Model& model, const Load
   // What events alone change is constant here.
   if (part.switches() == 0 && !(part.period() > 0)) return;
   if (dynamic_cast<const ForeignLaw*>(node.load.get()) != nullptr)
-    throw InputError(file + ": load '" + node.name +
-                     "' has a law that is not withy's own, of which there is no linear model: leave it out");
+    throw InputError(
+        file + ": load '" + node.name +
+        "' is sampled, and what its law remembers between two samples is kept elsewhere than in the state: "
+        "it cannot be displaced, and there is no linear model of it; leave it out");
   if (part.switches() > 0)
     throw InputError(file + ": load '" + node.name +
                      "' changes at instants (a relay); linear analyses need loads that do not: leave it out (--set "
