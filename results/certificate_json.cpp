@@ -22,7 +22,8 @@ Json body_json(const BodyValidity& b, const Certificate& certificate, const RunS
   Json j{{"name", b.name},
          {"formulation", formulation_of(b.name, certificate)},
          {"fundamental_frequency", b.fundamental},
-         {"rate_over_fundamental", {{"value", b.rate_ratio}, {"time", b.rate_time}}}};
+         {"rate_over_fundamental", {{"value", b.rate_ratio}, {"time", b.rate_time}}},
+         {"spin_over_bending", {{"value", b.spin_ratio}, {"time", b.spin_time}}}};
   Json shares = Json::object();
   for (std::size_t k = 0; k < motion_terms; ++k)
     if (b.load.shares[k] != 0) shares[motion_term_name(k)] = b.load.shares[k];

@@ -16,6 +16,9 @@ namespace {
 /// Of the elastic energy of a family: what its highest mode may have before the next one is missed.
 constexpr double highest_mode_limit = 0.1;
 
+/// Of what spins in the plane that a body bends in rounding leaves less.
+constexpr double least_spin = 1e-9;
+
 /// Modes in one direction alone: taken as the plane of rotation. What a plate or a body of a file bends like is not
 /// said.
 bool one_direction(const BodyValidity& body) {
@@ -42,6 +45,9 @@ void add_body(std::vector<Indicator>& all, const Scene& scene, const BodyValidit
                    rate_limit(own, one_direction(b)), "natural frequencies are 1 % off"});
     add_load(all, node, b, own);
   }
+  if (without_gyroscopic(own) && b.spin_ratio > least_spin)
+    all.push_back({"moment of what spins on '" + b.name + "' over what bends it", b.spin_ratio, spin_limit,
+                   "natural frequencies are 1 % off"});
   const std::optional<Bend> bend = greatest_bend(b, summary);
   if (bend && own.strain != StrainOrder::exact) {
     all.push_back({deflection_name(b) + " of '" + b.name + "' over its length", bend->deflection, deflection_limit,

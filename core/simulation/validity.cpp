@@ -43,6 +43,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       motion_(model),
       felt_(model, equations),
       frequency_(model, equations),
+      spin_(model),
       loops_(model, equations),
       work_(std::max(work_size(&equations), work_size(beyond))),
       rates_(equations.size()),
@@ -191,8 +192,12 @@ bool ValidityWatch::look_at_motion(const State& state) {
   if (!look_at_loads(state)) return false;
   frequency_.update(state.y, work_);
   loops_.find_frequencies();
+  spin_.update(motion_.bodies());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Watched& w = bodies_[i];
+    BodyValidity& v = validity_.bodies[i];
+    if (const double spin = spin_.ratio(w.body, motion_.bodies(), fundamental(w.body)); spin > v.spin_ratio)
+      v.spin_ratio = spin, v.spin_time = state.time;
     const double rate = felt_.turning(w.body).norm();
     w.sampled = std::max(w.sampled, rate);
     note_rate(i, rate, state.time);
@@ -244,6 +249,8 @@ void ValidityWatch::remember(Memory& memory) {
     memory(v.fundamental);
     memory(v.rate_ratio);
     memory(v.rate_time);
+    memory(v.spin_ratio);
+    memory(v.spin_time);
     for (LoadRatio* load : {&v.load, &v.whole}) {
       memory(load->least);
       memory(load->greatest);

@@ -12,6 +12,7 @@
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/busiest_state.hpp"
 #include "withy/core/simulation/carried_frequency.hpp"
+#include "withy/core/simulation/carried_spin.hpp"
 #include "withy/core/simulation/felt_motion.hpp"
 #include "withy/core/simulation/loop_following.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
@@ -38,6 +39,8 @@ struct BodyValidity {
   double fundamental = 0;
   double rate_ratio = 0;  ///< greatest |ω| of the body's frame over ω₁
   double rate_time = 0;   ///< when [s]
+  double spin_ratio = 0;  ///< greatest moment of what spins on the body over what bends it (CarriedSpin), over samples
+  double spin_time = 0;   ///< when [s]
   LoadRatio load;         ///< where its size is greatest
   double load_time = 0;   ///< when [s]
   LoadRatio whole;        ///< of the first of several segments: the same of the whole as one piece
@@ -141,6 +144,7 @@ class ValidityWatch {
   FeltMotion felt_;
   std::vector<Watched> bodies_;
   CarriedFrequency frequency_;
+  CarriedSpin spin_;
   LoopFollowing loops_;
   Work work_;  ///< of whichever equations are evaluated
   std::vector<double> rates_, beyond_rates_, difference_, product_;

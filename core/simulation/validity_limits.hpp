@@ -22,6 +22,15 @@ inline double rate_limit(const Terms& terms, bool one_direction) {
   return 0.129;
 }
 
+/// Whether the gyroscopic moments of what spins on bodies that bend are left out of their equations.
+inline bool without_gyroscopic(const Terms& terms) {
+  return terms.truncation == Truncation::ruthless || !terms.products_of_speeds;
+}
+
+/// Moment of what spins on a body over what bends it (CarriedSpin) beyond which frequencies are 1 % wrong where it is
+/// left out: half of the ratio, of a disk at the tip that is all moment of inertia.
+inline constexpr double spin_limit = 0.02;
+
 /// Load over buckling load up to which second-order terms may be left out.
 inline constexpr double load_limit = 0.1;
 /// Tip deflection over length up to which deflections are small.
