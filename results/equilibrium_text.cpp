@@ -136,9 +136,8 @@ std::string equilibrium_text(const study::Configuration& c, const study::Equilib
   if (!found.limited.empty()) text += '\n' + study::at_limits_text(found.limited) + '\n';
   if (found.steady.strayed > 0)
     text += fmt::format(
-        "\nA hinge is turned by {:.3g} rad from where it began, and following the forces led to no balance: there may "
-        "be "
-        "others, and nearer ones. --at begins elsewhere.\n",
+        "\nA hinge is turned by {:.3g} rad from where it began, and following the forces led to no balance: "
+        "there may be others, and nearer ones. --at begins elsewhere.\n",
         found.steady.strayed);
   if (!found.changing.empty()) text += '\n' + found.changing + '\n';
   return text;

@@ -162,9 +162,8 @@ std::string response_text(const study::Configuration& c, const study::Response& 
     if (!note.empty()) text += note + '\n';
   if (!r.follows.empty())
     text += fmt::format(
-        "The gain is that of all that {0} does, beside following {1} too, as friction: --input {2} opens the loop at "
-        "the "
-        "command alone\n",
+        "The gain is that of all that {0} does, beside following {1} too, as friction: --input {2} opens the loop "
+        "at the command alone\n",
         r.model.inputs[0].name, fmt::join(r.follows, " and "), r.follows.front());
   if (r.opened) text += static_words(r) + "; " + peak_words(r) + '\n';
   text += root_rows(r, r.roots.poles, true) + root_rows(r, r.roots.zeros, false) + peak_rows(r);
