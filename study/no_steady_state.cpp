@@ -5,33 +5,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "withy/core/model/limit_sensor.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
-#include "withy/core/simulation/renewal.hpp"
-#include "withy/core/simulation/sensor_reader.hpp"
+#include "withy/study/at_limits.hpp"
 #include "withy/study/configuration.hpp"
 
 namespace withy::study {
 namespace {
-
-/// Names of the loads that are at a limit at a state: what a controller does there does not depend on what it measures.
-std::vector<std::string> at_limits(const Configuration& c, State state) {
-  const Model& model = c.prepared().model();
-  // Sampled ones tell of their last sample, and none has been taken there.
-  Renewal renewal(model, *c.prepared().equations);
-  renewal.at(state);
-  for (const LoadSlot& slot : sampled_slots(model)) renewal(state, slot, {});
-  std::vector<std::string> names;
-  for (std::size_t l = 0; l < model.loads().size(); ++l) {
-    const std::shared_ptr<const BoundSensor> sensor = limit_sensor(model, l);
-    if (sensor == nullptr) continue;
-    SensorReader reader({{model.loads()[l].name, sensor}}, *c.prepared().equations);
-    double beyond = 0;
-    if (reader.read(state, {&beyond, 1}) && beyond >= 0) names.push_back(model.loads()[l].name);
-  }
-  return names;
-}
 
 /// The first coordinate by which what acts has no finite derivative at a state; empty where there are all.
 std::string without_derivative(const Configuration& c, const State& state) {
