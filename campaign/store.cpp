@@ -169,7 +169,7 @@ class StoreLock {
   /// \throws std::system_error; FolderBusy where it takes longer than any making of a store
   bool take(const std::function<bool()>& made) {
     using namespace std::chrono_literals;
-    constexpr auto patience = 20s, pause = 10ms;
+    constexpr std::chrono::milliseconds patience = 20s, pause = 10ms;
     const auto end = std::chrono::steady_clock::now() + patience;
     while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
       if (errno != EWOULDBLOCK && errno != EINTR)
