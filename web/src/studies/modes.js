@@ -210,7 +210,7 @@ export class Modes {
     for (const text of this.about(b, m)) this.card.append(element('div', text));
     if (!m.shape) return;
     if (this.swept) this.card.append(element('div', `like the branch's first shape (MAC): ${m.mac.toFixed(3)}`, { class: 'soft' }));
-    this.card.append(element('p', 'Shares of the kinetic energy, and phases; less than nothing has what moves against the momentum that the rest gives it', { class: 'soft' }));
+    this.card.append(element('p', 'Shares of the kinetic energy, and phases; a share is negative where a coordinate moves against the momentum that the others give it', { class: 'soft' }));
     const bars = element('table', null, { class: 'bars' });
     for (const [name, share, phase] of m.shape) {
       const row = element('tr'), cell = element('td'), bar = element('div', null, { class: 'level' });
