@@ -108,6 +108,7 @@ Json estimate_json(const Certificate& c) {
   j["at_most"] = e.at_most;
   j["until"] = e.distances.until;
   j["off"] = e.off;
+  j["lacks"] = e.lacks.empty() ? Json() : Json(e.lacks);
   j["evaluations"] = e.evaluations;
   j["cpu_seconds"] = e.cpu_seconds;
   return j;

@@ -112,6 +112,7 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model, double
   if (!e.at_most.empty())
     out += fmt::format("; the values of {} are rough upper bounds: coarse runs do not resolve them",
                        fmt::join(e.at_most, ", "));
+  if (!e.lacks.empty()) out += "; " + e.lacks;
   if (e.distances.until < e.end)
     out += fmt::format("; up to {:.4g} s, to which the runs compared came", e.distances.until);
   else if (e.end < reached)

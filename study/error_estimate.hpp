@@ -33,6 +33,7 @@ struct ErrorEstimate {
   /// The greatest part of an output's range that the coarse run is off the run itself; zero of an estimate at any
   /// price, whose runs are as exact as it asks.
   double off = 0;
+  std::string lacks = {};  ///< what the other model neglects, where that may be as much as it tells; else empty
 };
 
 /// What an estimate may cost.

@@ -267,7 +267,7 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
     push = std::move(command.push);
   } else {
     all = is_sampled ? FedBack{sampled.own_efforts().middleCols(first, count), {}}
-                     : fed_back(motions, [&](const State& state) { return motions.efforts(state, load); });
+                     : fed_back(motions, [&, at = load](const State& state) { return motions.efforts(state, at); });
     if (!is_sampled && hinge.empty() && all.slopes.isZero(0) && model.loads()[load].load->output() != nullptr)
       return open_at_command(c, name, load);
     answer = answer_of(c, all.slopes, name, hinge);

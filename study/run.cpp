@@ -160,17 +160,8 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
   std::string third = "terms of third order in the deflection are neglected";
   // What second-order kinematics was measured to be off by at a state (ThirdOrder). What a motion is off by after a
   // while is more, for frequencies are wrong by that and phases run apart.
-  if (!summary.peak_deflection_ratio.empty()) {
-    Bend most;
-    for (const BodyValidity& body : summary.validity.bodies)
-      if (const auto bend = greatest_bend(body, summary); bend && bend->size() > most.size()) most = *bend;
-    const double share = 100 * third_order_share(most);
-    third += fmt::format(
-        ", about {} % of it at an instant where {}; the error of the run grows with time and may be many times larger",
-        share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share),
-        most.bent() && most.by_angle() ? fmt::format("a section of a bent body is turned by {:.2g} rad", most.angle)
-                                       : fmt::format("it is {:.2g} of a body's length", most.deflection));
-  }
+  if (const std::optional<Bend> most = greatest_bend(summary))
+    third += ", " + third_order_text(*most) + "; the error of the run grows with time and may be many times larger";
   const std::string lacking = beyond ? "" : without_exact_kinematics(prepared.model());
   if (!lacking.empty())
     return third + "; not measured, for " + lacking +
@@ -239,6 +230,23 @@ CertifiedRun run_by_plan(const Prepared& prepared, Registry& registry, const Run
   return result;
 }
 
+/// What the model up neglects itself, where that may come to a third of what deflections are told to be off by; else
+/// empty. \param terms of the model up
+std::string neglected_up(const Prepared& prepared, const RunSummary& summary, const ErrorEstimate& estimate,
+                         const Terms& terms) {
+  constexpr double worth_saying = 1.0 / 3;
+  const std::optional<Bend> most = greatest_bend(summary);
+  if (!most || terms.strain == StrainOrder::exact) return {};
+  double range = 0, off = 0;
+  for (const BodyNode& body : prepared.model().bodies())
+    if (const auto ratio = summary.peak_deflection_ratio.find(body.name); ratio != summary.peak_deflection_ratio.end())
+      range = std::max(range, ratio->second * body.body->shape().length);
+  for (const auto& [name, distance] : estimate.distances.deflections) off = std::max(off, distance);
+  if (!(third_order_over_a_run(*most) * range > worth_saying * off)) return {};
+  return fmt::format("{} itself neglects terms of third order in the deflection, {}, and may be as far off",
+                     estimate.against, third_order_text(*most));
+}
+
 /// The error of a run against the model up, or why it is not known. \param comparable with a run of another model
 EstimateOutcome estimate_of(const Prepared& prepared, Registry& registry, const RunSettings& settings,
                             const std::optional<Beyond>& beyond, const RunSummary& summary, bool comparable) {
@@ -247,6 +255,9 @@ EstimateOutcome estimate_of(const Prepared& prepared, Registry& registry, const 
     outcome =
         estimate_error(prepared.scene, *prepared.equations, *beyond, summary, registry,
                        settings.estimate == Estimate::always ? Price::any : Price::tenth, settings.control.interrupted);
+  if (outcome.estimate)
+    outcome.estimate->lacks =
+        neglected_up(prepared, summary, *outcome.estimate, make_formulation(registry, beyond->formulation)->terms());
   if (summary.status != RunStatus::interrupted && settings.control.stop())
     outcome = {{}, "not estimated: the estimate was interrupted"};
   if (outcome.why_not.empty() && !outcome.estimate && settings.look_beyond)

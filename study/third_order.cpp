@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "withy/study/indicators.hpp"
+
 namespace withy::study {
 
 double third_order_share(const Bend& bend) { return bend.size() * bend.size(); }
@@ -13,6 +15,23 @@ double third_order_share(const Bend& bend) { return bend.size() * bend.size(); }
 double third_order_over_a_run(const Bend& bend) {
   constexpr double growth = 10;
   return growth * third_order_share(bend);
+}
+
+std::optional<Bend> greatest_bend(const RunSummary& summary) {
+  if (summary.peak_deflection_ratio.empty()) return {};
+  Bend most;
+  for (const BodyValidity& body : summary.validity.bodies)
+    if (const auto bend = greatest_bend(body, summary); bend && bend->size() > most.size()) most = *bend;
+  return most;
+}
+
+std::string third_order_text(const Bend& bend) {
+  const double share = 100 * third_order_share(bend);
+  return fmt::format("about {} % of it at an instant where {}",
+                     share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share),
+                     bend.bent() && bend.by_angle()
+                         ? fmt::format("a section of a bent body is turned by {:.2g} rad", bend.angle)
+                         : fmt::format("it is {:.2g} of a body's length", bend.deflection));
 }
 
 std::string bend_text(const Bend& bend) {

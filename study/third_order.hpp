@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,11 @@ double third_order_share(const Bend& bend);
 /// What they may come to over a run: ten times that share. Where `exact` can tell, most motions are off by less and few
 /// by more, by what runs apart in long vibrations and near buckling (table in docs/validity.md).
 double third_order_over_a_run(const Bend& bend);
+/// Where a run bent its bodies most; nothing where none bent.
+std::optional<Bend> greatest_bend(const RunSummary& summary);
+/// "about 0.14 % of it at an instant where it is 0.037 of a body's length": what terms of third order are of a
+/// deflection.
+std::string third_order_text(const Bend& bend);
 /// "deflections of 0.11 of a body's length", "sections of a bent body that turn by 1.2 rad".
 std::string bend_text(const Bend& bend);
 
