@@ -230,11 +230,10 @@ CertifiedRun run_by_plan(const Prepared& prepared, Registry& registry, const Run
   return result;
 }
 
-/// What the model up neglects itself, where that may come to a third of what deflections are told to be off by; else
-/// empty. \param terms of the model up
+/// What the model up neglects itself, where that may come to what deflections are told to be off by; else empty. \param
+/// terms of the model up
 std::string neglected_up(const Prepared& prepared, const RunSummary& summary, const ErrorEstimate& estimate,
                          const Terms& terms) {
-  constexpr double worth_saying = 1.0 / 3;
   const std::optional<Bend> most = greatest_bend(summary);
   if (!most || terms.strain == StrainOrder::exact) return {};
   double range = 0, off = 0;
@@ -242,8 +241,8 @@ std::string neglected_up(const Prepared& prepared, const RunSummary& summary, co
     if (const auto ratio = summary.peak_deflection_ratio.find(body.name); ratio != summary.peak_deflection_ratio.end())
       range = std::max(range, ratio->second * body.body->shape().length);
   for (const auto& [name, distance] : estimate.distances.deflections) off = std::max(off, distance);
-  if (!(third_order_over_a_run(*most) * range > worth_saying * off)) return {};
-  return fmt::format("{} itself neglects terms of third order in the deflection, {}, and may be as far off",
+  if (!(third_order_over_a_run(*most) * range > off)) return {};
+  return fmt::format("{} itself neglects terms of third order in the deflection, {}: its deflections may be as far off",
                      estimate.against, third_order_text(*most));
 }
 
