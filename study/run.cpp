@@ -230,8 +230,8 @@ CertifiedRun run_by_plan(const Prepared& prepared, Registry& registry, const Run
   return result;
 }
 
-/// What the model up neglects itself, where that may come to what deflections are told to be off by; else empty. \param
-/// terms of the model up
+/// What the model up neglects itself, where that may come to what deflections are told to be off by; else empty.
+/// \param terms of the model up
 std::string neglected_up(const Prepared& prepared, const RunSummary& summary, const ErrorEstimate& estimate,
                          const Terms& terms) {
   const std::optional<Bend> most = greatest_bend(summary);

@@ -60,6 +60,45 @@ TEST(RunCertificates, WhatIsLeftOutAtAnInstantIsNotToldAsTheErrorOfARun) {
   EXPECT_NE(said.find("the error of the run grows with time"), std::string::npos) << said;
 }
 
+/// A boom that falls from level. Where nothing is said of the model up, its own error is less than what is told of the
+/// model used; where it bends far something is said, and there it is not.
+TEST(RunCertificates, SayWhereTheModelUpMayBeAsFarOff) {
+  const auto certificate = [](const std::string& stiffness, const std::string& formulation, Estimate estimate) {
+    SceneValues values = SceneValues::parse(R"(
+format: withy/1
+gravity: [0, -9.81, 0]
+time: {end: 0.5, output: 0.01}
+bodies: {boom: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: )" +
+                                                stiffness +
+                                                R"(, modes: 2}}}
+hinges: {pin: {type: revolute, axis: [0, 0, 1], parent: world, child: boom}}
+loads: {stop: {type: hinge-spring, hinge: pin, stiffness: 50}}
+)",
+                                            "boom");
+    values.choose_formulation(formulation, "the test");
+    RunSettings settings;
+    settings.estimate = estimate;
+    return run(prepare(values, plugins()), plugins(), settings).certificate;
+  };
+  const auto off = [](const Certificate& c) { return c.estimate->distances.deflections.begin()->second; };
+  struct Case {
+    std::string stiffness, formulation;
+    bool said;
+  };
+  for (const Case& c : {Case{"1", "symmetric", true}, Case{"100", "symmetric", true}, Case{"100", "ruthless", false}}) {
+    const Certificate used = certificate(c.stiffness, c.formulation, Estimate::always),
+                      up = certificate(c.stiffness, "quadratic", Estimate::always);
+    ASSERT_TRUE(used.estimate && up.estimate) << c.stiffness;
+    EXPECT_EQ(used.estimate->lacks.find("quadratic itself neglects") != std::string::npos, c.said) << c.stiffness;
+    EXPECT_EQ(up.estimate->lacks, "") << "exact neglects nothing";
+    if (c.said) {
+      EXPECT_GT(off(up), 0.1 * off(used)) << c.stiffness;
+    } else {
+      EXPECT_LT(off(up), off(used)) << c.stiffness;
+    }
+  }
+}
+
 /// A heavy boom on a ball joint that gravity turns about its axis: nothing turns fast or bends far, and in `consistent`
 /// the tip is off by three quarters of its deflection.
 /// \param in_space it turns little there, and bends by its spring alone
